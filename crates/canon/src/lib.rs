@@ -1,0 +1,279 @@
+//! The canonical commands: the narrow waist between language and motion.
+//!
+//! In: what the interpreter and the cycles decided. Out: one closed enum, [`Action`], that preview, time,
+//! simulation, expander and machine all read, each command with the [`Origin`] that it came from.
+//!
+//! Invariants: positions are exact and in the frame [`WorkTip`]; X is a radius; moves of no length do not
+//! exist; no address letter and no control name is here, and a code number occurs only as the label that a
+//! person typed ([`CycleLabel`]).
+
+mod listing;
+
+pub use listing::write_listing;
+use turnwright_units::{
+    Angle, Feed, Lead, Position, Revolutions, Rpm, Seconds, SurfaceSpeed, WorkTip,
+};
+
+/// One command and where it came from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Command {
+    /// What is to be done.
+    pub action: Action,
+    /// Which words asked for it.
+    pub origin: Origin,
+}
+
+/// Everything that a program can ask of the machine.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// Positioning at rapid traverse.
+    Rapid {
+        /// End point.
+        to: Position<WorkTip>,
+        /// How the axes share the way.
+        path: RapidPath,
+    },
+    /// A cutting move.
+    Feed {
+        /// End point.
+        to: Position<WorkTip>,
+        /// Line or arc.
+        shape: Shape,
+        /// Tangential feed.
+        feed: Feed,
+    },
+    /// A move in step with the spindle.
+    Thread {
+        /// End point.
+        to: Position<WorkTip>,
+        /// Lead along the long axis at the start.
+        lead: Lead,
+        /// Lead at the end, when it varies.
+        lead_end: Option<Lead>,
+        /// Spindle angle at which the move starts.
+        start_angle: Angle,
+    },
+    /// Standing still.
+    Dwell(Dwell),
+    /// New state of the spindle.
+    Spindle {
+        /// Turning or not, and which way.
+        state: SpindleState,
+        /// How the speed is held.
+        speed: SpindleSpeed,
+        /// Upper limit of the speed, when one is set.
+        rpm_max: Option<Rpm>,
+    },
+    /// A tool and its offset are called.
+    Tool {
+        /// Turret station.
+        tool: u32,
+        /// Offset number; 0 cancels.
+        offset: u32,
+    },
+    /// Coolant.
+    Coolant(Coolant),
+    /// Any auxiliary function that only the machine's own logic knows.
+    Auxiliary {
+        /// Its number.
+        code: u32,
+    },
+    /// Wait for cycle start.
+    Stop,
+    /// Wait for cycle start when the operator has chosen to.
+    OptionalStop,
+    /// The program is over.
+    End,
+    /// Words for the operator.
+    Message(Box<str>),
+}
+
+/// How the axes share a rapid move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RapidPath {
+    /// Each axis at its own rapid rate; the shorter way ends first (dog-leg).
+    EachAxis,
+    /// A straight line in the shortest time.
+    Straight,
+}
+
+/// The form of a cutting move. Start and end are exact; the radius is the distance of the centre from them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// A straight line.
+    Line,
+    /// An arc about `centre`.
+    Arc {
+        /// Which way, seen with Z to the right and X up.
+        turn: Turn,
+        /// Centre of the circle.
+        centre: Position<WorkTip>,
+    },
+}
+
+/// The way an arc turns, seen with Z to the right and X up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Turn {
+    /// Clockwise.
+    Clockwise,
+    /// Counter-clockwise.
+    CounterClockwise,
+}
+
+/// A pause.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Dwell {
+    /// By the clock.
+    Time(Seconds),
+    /// By the spindle.
+    Turns(Revolutions),
+}
+
+/// Spindle on or off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum SpindleState {
+    /// Turning clockwise, seen from behind the chuck.
+    Clockwise,
+    /// Turning counter-clockwise.
+    CounterClockwise,
+    /// Standing.
+    #[default]
+    Stop,
+}
+
+/// How the spindle speed is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpindleSpeed {
+    /// Fixed.
+    Constant(Rpm),
+    /// Following the diameter so that the tip sees this speed.
+    Surface(SurfaceSpeed),
+}
+
+/// Coolant on or off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coolant {
+    /// Flowing.
+    On,
+    /// Not flowing.
+    Off,
+}
+
+/// A cycle's code as the program wrote it, times ten: 710 for a person's `G71`, 71.1 would be 711.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CycleLabel(pub u16);
+
+impl std::fmt::Display for CycleLabel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.0.is_multiple_of(10) {
+            write!(f, "G{:02}", self.0 / 10)
+        } else {
+            write!(f, "G{:02}.{}", self.0 / 10, self.0 % 10)
+        }
+    }
+}
+
+/// What part a move plays in its cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Phase {
+    /// From the start point to the start point moved by the allowances.
+    Approach,
+    /// To the depth of the next pass.
+    Infeed,
+    /// The pass itself.
+    Cut,
+    /// Away from the work at 45 degrees, or along the figure.
+    Escape,
+    /// Back to where the next pass starts.
+    Return,
+    /// Once along the figure with allowance.
+    Contour,
+    /// Once along the figure itself.
+    Finish,
+    /// A peck.
+    Peck,
+    /// The small return after a peck.
+    Back,
+    /// Sideways from the bottom of a groove.
+    Relief,
+    /// To the next column or start.
+    Shift,
+    /// In step with the spindle.
+    Thread,
+    /// The run-out of a thread.
+    Chamfer,
+    /// Out of the work.
+    Out,
+    /// Back to the start point of the cycle.
+    Home,
+}
+
+impl Phase {
+    /// The word of the trace format.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Approach => "approach",
+            Self::Infeed => "infeed",
+            Self::Cut => "cut",
+            Self::Escape => "escape",
+            Self::Return => "return",
+            Self::Contour => "contour",
+            Self::Finish => "finish",
+            Self::Peck => "peck",
+            Self::Back => "back",
+            Self::Relief => "relief",
+            Self::Shift => "shift",
+            Self::Thread => "thread",
+            Self::Chamfer => "chamfer",
+            Self::Out => "out",
+            Self::Home => "home",
+        }
+    }
+}
+
+/// Where a move stands in the cycle that made it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CycleOrigin {
+    /// The cycle's code as written.
+    pub label: CycleLabel,
+    /// Number of the pass from 1; 0 before the first.
+    pub pass: u32,
+    /// What the move is for.
+    pub phase: Phase,
+}
+
+/// Where a command came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Origin {
+    /// Which program text.
+    pub source: u32,
+    /// Line in that text, from 1. For a move of a cycle: the line of the block that ran the cycle.
+    pub line: u32,
+    /// Line of the figure block that gave the move its shape, when that is another one.
+    pub figure_line: Option<u32>,
+    /// Sequence number of the block at `line`.
+    pub sequence: Option<u32>,
+    /// Program number.
+    pub program: Option<u32>,
+    /// Call depth, 0 in the main program.
+    pub depth: u8,
+    /// The cycle, when one made the command.
+    pub cycle: Option<CycleOrigin>,
+}
+
+impl Origin {
+    /// The origin of a block outside any cycle.
+    pub const fn line(line: u32) -> Self {
+        Self { source: 0, line, figure_line: None, sequence: None, program: None, depth: 0, cycle: None }
+    }
+}
+
+impl Action {
+    /// The end point of a move, `None` for everything else.
+    pub const fn end_point(&self) -> Option<Position<WorkTip>> {
+        match self {
+            Self::Rapid { to, .. } | Self::Feed { to, .. } | Self::Thread { to, .. } => Some(*to),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! The text listing of commands: what fixtures and people read.
+//!
+//! One command a line, lengths in millimetres, X as `d` (diameter):
+//! `feed d40 z-15 f0.3/rev` · `cw d36 z-45 c(d36 z-42) f0.3/rev` · `rapid d46 z0.5`.
+
+use turnwright_units::{Feed, Position, WorkTip, write_fixed, write_millimetres};
+
+use crate::{Action, Command, Coolant, Dwell, Shape, SpindleSpeed, SpindleState, Turn};
+
+/// Writes one command, without a line end, its lengths rounded to `decimals` places.
+pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
+    match &command.action {
+        Action::Rapid { to, .. } => {
+            out.extend_from_slice(b"rapid");
+            write_position(out, *to, decimals);
+        }
+        Action::Feed { to, shape, feed } => {
+            match shape {
+                Shape::Line => {
+                    out.extend_from_slice(b"feed");
+                    write_position(out, *to, decimals);
+                }
+                Shape::Arc { turn, centre } => {
+                    out.extend_from_slice(match turn {
+                        Turn::Clockwise => b"cw",
+                        Turn::CounterClockwise => b"ccw",
+                    });
+                    write_position(out, *to, decimals);
+                    out.extend_from_slice(b" c(");
+                    let before = out.len();
+                    write_position(out, *centre, decimals);
+                    out.remove(before);
+                    out.push(b')');
+                }
+            }
+            out.extend_from_slice(b" f");
+            write_millimetres(out, feed.length(), 6);
+            out.extend_from_slice(match feed {
+                Feed::PerMinute(_) => b"/min",
+                Feed::PerRevolution(_) => b"/rev",
+            });
+        }
+        Action::Thread { to, lead, lead_end, start_angle } => {
+            out.extend_from_slice(b"thread");
+            write_position(out, *to, decimals);
+            out.extend_from_slice(b" lead");
+            write_millimetres(out, lead.0, 6);
+            if let Some(end) = lead_end {
+                out.extend_from_slice(b"..");
+                write_millimetres(out, end.0, 6);
+            }
+            if start_angle.millidegrees() != 0 {
+                out.extend_from_slice(b" q");
+                write_fixed(out, start_angle.millidegrees(), 3);
+            }
+        }
+        Action::Dwell(Dwell::Time(seconds)) => {
+            out.extend_from_slice(format!("dwell {}s", seconds.0).as_bytes());
+        }
+        Action::Dwell(Dwell::Turns(turns)) => {
+            out.extend_from_slice(format!("dwell {}rev", turns.0).as_bytes());
+        }
+        Action::Spindle { state, speed, rpm_max } => {
+            out.extend_from_slice(match state {
+                SpindleState::Clockwise => b"spindle cw",
+                SpindleState::CounterClockwise => b"spindle ccw",
+                SpindleState::Stop => b"spindle stop",
+            });
+            match speed {
+                SpindleSpeed::Constant(rpm) => out.extend_from_slice(format!(" {}rpm", rpm.0).as_bytes()),
+                SpindleSpeed::Surface(speed) => {
+                    out.extend_from_slice(format!(" {}m/min", speed.to_m_per_min()).as_bytes());
+                }
+            }
+            if let Some(rpm) = rpm_max {
+                out.extend_from_slice(format!(" max{}", rpm.0).as_bytes());
+            }
+        }
+        Action::Tool { tool, offset } => {
+            out.extend_from_slice(format!("tool {tool} offset {offset}").as_bytes());
+        }
+        Action::Coolant(Coolant::On) => out.extend_from_slice(b"coolant on"),
+        Action::Coolant(Coolant::Off) => out.extend_from_slice(b"coolant off"),
+        Action::Auxiliary { code } => out.extend_from_slice(format!("auxiliary {code}").as_bytes()),
+        Action::Stop => out.extend_from_slice(b"stop"),
+        Action::OptionalStop => out.extend_from_slice(b"optional-stop"),
+        Action::End => out.extend_from_slice(b"end"),
+        Action::Message(text) => {
+            out.extend_from_slice(b"message ");
+            out.extend_from_slice(text.as_bytes());
+        }
+    }
+    if let Some(cycle) = &command.origin.cycle {
+        out.extend_from_slice(format!("  {} {}", cycle.label, cycle.phase.word()).as_bytes());
+        if cycle.pass > 0 {
+            out.extend_from_slice(format!(" {}", cycle.pass).as_bytes());
+        }
+    }
+}
+
+fn write_position(out: &mut Vec<u8>, to: Position<WorkTip>, decimals: u8) {
+    out.extend_from_slice(b" d");
+    write_millimetres(out, to.x.to_diameter().0, decimals);
+    out.extend_from_slice(b" z");
+    write_millimetres(out, to.z, decimals);
+}

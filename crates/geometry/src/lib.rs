@@ -1,0 +1,31 @@
+//! Plane geometry of the half-section.
+//!
+//! In and out: `f64` millimetres, X as a radius. Every approximation takes its tolerance as an argument.
+//! Deliberately not here: frames, words, control state, rounding to increments.
+//!
+//! The plane is seen with Z to the right and X up; angles are counter-clockwise from +Z.
+
+mod arc;
+
+pub use arc::{ArcFault, centre_from_radius, sweep_rad};
+
+/// A place in the half-section.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Point {
+    /// Distance from the spindle axis, mm (radius).
+    pub x: f64,
+    /// Distance along the spindle axis, mm.
+    pub z: f64,
+}
+
+impl Point {
+    /// A place.
+    pub const fn new(x: f64, z: f64) -> Self {
+        Self { x, z }
+    }
+
+    /// Straight distance to another place, mm.
+    pub fn distance(self, other: Self) -> f64 {
+        (self.x - other.x).hypot(self.z - other.z)
+    }
+}

@@ -1,0 +1,92 @@
+//! An own fixed-point number writer: listings and traces are numbers, and `format!` is too slow for them.
+
+use crate::Length;
+
+/// Writes `value` / 10^`decimals` without trailing zeros (`12.5`, `-0.001`, `40`).
+///
+/// `decimals` is at most 18.
+pub fn write_fixed(out: &mut Vec<u8>, value: i64, decimals: u8) {
+    let mut magnitude = value.unsigned_abs();
+    let mut places = decimals.min(18);
+    while places > 0 && magnitude.is_multiple_of(10) {
+        magnitude /= 10;
+        places -= 1;
+    }
+    // 20 digits of a u64, a point, a sign, and a zero before the point.
+    let mut text = [0u8; 24];
+    let mut at = text.len();
+    let mut written = 0u8;
+    while magnitude > 0 || written <= places {
+        if written == places && places > 0 {
+            at -= 1;
+            text[at] = b'.';
+        }
+        at -= 1;
+        text[at] = b'0' + (magnitude % 10) as u8;
+        magnitude /= 10;
+        written += 1;
+    }
+    if value < 0 {
+        at -= 1;
+        text[at] = b'-';
+    }
+    out.extend_from_slice(&text[at..]);
+}
+
+/// Writes a length in millimetres, rounded to `decimals` (at most 6) places, halves away from zero,
+/// without trailing zeros.
+pub fn write_millimetres(out: &mut Vec<u8>, length: Length, decimals: u8) {
+    const STEP_NM: [i64; 7] = [1_000_000, 100_000, 10_000, 1_000, 100, 10, 1];
+    let decimals = decimals.min(6);
+    let step = STEP_NM[decimals as usize];
+    let half = if length.nm() < 0 { -(step / 2) } else { step / 2 };
+    write_fixed(out, length.nm().saturating_add(half) / step, decimals);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fixed(value: i64, decimals: u8) -> String {
+        let mut out = Vec::new();
+        write_fixed(&mut out, value, decimals);
+        String::from_utf8(out).expect("digits")
+    }
+
+    #[test]
+    fn numbers_carry_no_trailing_zeros() {
+        assert_eq!(fixed(0, 3), "0");
+        assert_eq!(fixed(12_500, 3), "12.5");
+        assert_eq!(fixed(-1, 3), "-0.001");
+        assert_eq!(fixed(40_000, 3), "40");
+        assert_eq!(fixed(7, 0), "7");
+        assert_eq!(fixed(i64::MIN, 6), "-9223372036854.775808");
+        assert_eq!(fixed(1, 18), "0.000000000000000001");
+        assert_eq!(fixed(i64::MIN, 18), "-9.223372036854775808");
+    }
+
+    #[test]
+    fn agrees_with_the_standard_library_on_random_values() {
+        let mut seed = 88_172_645_463_325_252u64;
+        for _ in 0..20_000 {
+            seed ^= seed << 13;
+            seed ^= seed >> 7;
+            seed ^= seed << 17;
+            let value = (seed as i64) >> (seed % 50);
+            let decimals = (seed % 7) as u8;
+            let text = fixed(value, decimals);
+            let scaled: f64 = text.parse().expect("a number");
+            let expected = value as f64 / 10f64.powi(decimals.into());
+            assert!((scaled - expected).abs() <= expected.abs() * 1e-15, "{value} {decimals} {text}");
+        }
+    }
+
+    #[test]
+    fn lengths_are_rounded_to_the_places_shown() {
+        let mut out = Vec::new();
+        write_millimetres(&mut out, Length::from_nm(27_241_421), 3);
+        out.push(b' ');
+        write_millimetres(&mut out, Length::from_nm(-2_540), 3);
+        assert_eq!(out, b"27.241 -0.003");
+    }
+}
