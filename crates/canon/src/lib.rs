@@ -10,9 +10,7 @@
 mod listing;
 
 pub use listing::write_listing;
-use turnwright_units::{
-    Angle, Feed, Lead, Position, Revolutions, Rpm, Seconds, SurfaceSpeed, WorkTip,
-};
+use turnwright_units::{Angle, Feed, Lead, Position, Revolutions, Rpm, Seconds, SurfaceSpeed, WorkTip};
 
 /// One command and where it came from.
 #[derive(Clone, Debug, PartialEq)]

@@ -74,8 +74,8 @@ mod tests {
     #[test]
     fn quarter_arc_of_the_shaft_example() {
         // X30 Z-42 to X36 Z-45, clockwise R3: the centre is X36 Z-42.
-        let centre =
-            centre_from_radius(Point::new(15.0, -42.0), Point::new(18.0, -45.0), 3.0, true, 0.0).expect("arc");
+        let centre = centre_from_radius(Point::new(15.0, -42.0), Point::new(18.0, -45.0), 3.0, true, 0.0)
+            .expect("arc");
         assert!((centre.x - 18.0).abs() < 1e-12 && (centre.z + 42.0).abs() < 1e-12, "{centre:?}");
     }
 

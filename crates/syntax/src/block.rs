@@ -206,7 +206,11 @@ impl Block {
 
     /// The last word with this letter and without a comma.
     pub fn word(&self, letter: u8) -> Option<&Word> {
-        if self.has(letter) { self.words.get(usize::from(self.last[usize::from(letter - b'A')])) } else { None }
+        if self.has(letter) {
+            self.words.get(usize::from(self.last[usize::from(letter - b'A')]))
+        } else {
+            None
+        }
     }
 
     /// The last word with this letter behind a comma.

@@ -353,9 +353,10 @@ impl<'a> Parser<'a> {
         // A function may be written with its first two letters.
         let length = self.line[start..self.end].iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
         let name = self.line[start..start + length].to_ascii_uppercase();
-        let found = FUNCTIONS.iter().find(|(word, _)| *word == name.as_slice()).or_else(|| {
-            FUNCTIONS.iter().find(|(word, _)| name.len() == 2 && word.starts_with(&name))
-        });
+        let found = FUNCTIONS
+            .iter()
+            .find(|(word, _)| *word == name.as_slice())
+            .or_else(|| FUNCTIONS.iter().find(|(word, _)| name.len() == 2 && word.starts_with(&name)));
         let Some((_, function)) = found else { return self.fault("function") };
         self.at += length;
         let mut second = None;

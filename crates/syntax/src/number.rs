@@ -42,7 +42,8 @@ mod tests {
 
     #[test]
     fn scaling_keeps_or_cuts() {
-        let number = Decimal { digits: -12_345, scale: 3, typed_digits: 5, has_point: true, is_negative: true };
+        let number =
+            Decimal { digits: -12_345, scale: 3, typed_digits: 5, has_point: true, is_negative: true };
         assert_eq!(number.scaled(3), Some((-12_345, false)));
         assert_eq!(number.scaled(6), Some((-12_345_000, false)));
         assert_eq!(number.scaled(1), Some((-123, true)));

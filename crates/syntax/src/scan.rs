@@ -30,9 +30,8 @@ struct Scanner<'a> {
 const NAME_BYTES_MAX: usize = 64;
 
 /// Words that begin a macro statement.
-const KEYWORDS: [&[u8]; 11] = [
-    b"IF", b"WHILE", b"GOTO", b"DO", b"END", b"THEN", b"POPEN", b"PCLOS", b"DPRNT", b"BPRNT", b"SETVN",
-];
+const KEYWORDS: [&[u8]; 11] =
+    [b"IF", b"WHILE", b"GOTO", b"DO", b"END", b"THEN", b"POPEN", b"PCLOS", b"DPRNT", b"BPRNT", b"SETVN"];
 
 impl Scanner<'_> {
     fn run(&mut self) {
@@ -507,7 +506,9 @@ mod tests {
         let mut shown = Vec::new();
         for word in &block.words {
             let value = match word.value {
-                Value::Number(n) => format!("{}e-{}{}", n.digits, n.scale, if n.has_point { "." } else { "" }),
+                Value::Number(n) => {
+                    format!("{}e-{}{}", n.digits, n.scale, if n.has_point { "." } else { "" })
+                }
                 Value::Expression { start, end } => text[start as usize..end as usize].to_string(),
                 Value::Missing => "?".to_string(),
             };

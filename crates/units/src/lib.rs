@@ -16,7 +16,9 @@ mod length;
 mod number;
 mod position;
 
-pub use feed::{Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Revolutions, Rpm, Seconds, SurfaceSpeed};
+pub use feed::{
+    Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Revolutions, Rpm, Seconds, SurfaceSpeed,
+};
 pub use length::{Diameter, LeastIncrement, Length, Radius};
 pub use number::{write_fixed, write_millimetres};
 pub use position::{Displacement, Frame, MachineTurret, Position, Shift, WorkNose, WorkTip};

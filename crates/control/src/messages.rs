@@ -1,0 +1,133 @@
+//! The words of diagnostics, in English and Chinese, and the numbers that controls print for them.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use turnwright_diagnostics::{Argument, Diagnostic};
+
+use crate::policy::AlarmIds;
+
+/// A language that every text exists in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Language {
+    /// English.
+    #[default]
+    English,
+    /// Chinese.
+    Chinese,
+}
+
+/// A diagnostic in words.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MessageText {
+    /// What is wrong.
+    pub message: String,
+    /// Why.
+    pub cause: String,
+    /// What to do.
+    pub remedy: String,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Ids {
+    three: Option<String>,
+    four: Option<String>,
+    gsk: Option<String>,
+    own: Option<String>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Entry {
+    ids: Ids,
+    en: MessageText,
+    zh: MessageText,
+}
+
+/// All texts. Reading them takes a millisecond: load once, and only when there is something to say.
+#[derive(Clone, Debug)]
+pub struct Messages {
+    entries: BTreeMap<String, Entry>,
+}
+
+impl Messages {
+    /// Reads the table.
+    ///
+    /// # Panics
+    /// Never with the data compiled in; a test reads it.
+    pub fn load() -> Self {
+        let entries = toml::from_str(include_str!("../../../data/alarms.toml"))
+            .unwrap_or_else(|error| unreachable!("data/alarms.toml is read by a test: {error}"));
+        Self { entries }
+    }
+
+    /// All keys.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        self.entries.keys().map(String::as_str)
+    }
+
+    /// The number of a diagnostic: the control's own where it has one, else ours.
+    pub fn id(&self, key: &str, ids: AlarmIds) -> Option<&str> {
+        let entry = &self.entries.get(key)?.ids;
+        let own = match ids {
+            AlarmIds::Three => &entry.three,
+            AlarmIds::Four => &entry.four,
+            AlarmIds::Gsk => &entry.gsk,
+        };
+        own.as_deref().or(entry.own.as_deref())
+    }
+
+    /// Keys that a number names on a control (several conditions may share one number).
+    pub fn by_id(&self, number: &str, ids: AlarmIds) -> Vec<&str> {
+        let wanted = plain_id(number);
+        self.keys().filter(|key| self.id(key, ids).is_some_and(|id| plain_id(id) == wanted)).collect()
+    }
+
+    /// A diagnostic in words, with its arguments put in.
+    pub fn text(&self, diagnostic: &Diagnostic, language: Language) -> MessageText {
+        let Some(raw) = self.raw(diagnostic.key, language) else {
+            let key = diagnostic.key.to_string();
+            return MessageText { message: key, cause: String::new(), remedy: String::new() };
+        };
+        let fill = |text: &str| fill(text, &diagnostic.arguments);
+        MessageText { message: fill(&raw.message), cause: fill(&raw.cause), remedy: fill(&raw.remedy) }
+    }
+
+    /// The words behind a key, arguments still in braces.
+    pub fn raw(&self, key: &str, language: Language) -> Option<&MessageText> {
+        let entry = self.entries.get(key)?;
+        Some(match language {
+            Language::English => &entry.en,
+            Language::Chinese => &entry.zh,
+        })
+    }
+}
+
+/// `PS0010`, `ps10` and `0010` are one number.
+fn plain_id(id: &str) -> String {
+    let upper = id.trim().to_ascii_uppercase();
+    let digits = upper.strip_prefix("PS").unwrap_or(&upper).trim_start_matches('0');
+    digits.to_string()
+}
+
+fn fill(text: &str, arguments: &[(&'static str, Argument)]) -> String {
+    let mut out = String::with_capacity(text.len() + 16);
+    let mut rest = text;
+    while let Some(open) = rest.find('{') {
+        out.push_str(&rest[..open]);
+        rest = &rest[open..];
+        let Some(close) = rest.find('}') else { break };
+        let name = &rest[1..close];
+        match arguments.iter().find(|(known, _)| *known == name) {
+            Some((_, Argument::Text(value))) => out.push_str(value),
+            Some((_, Argument::Integer(value))) => out.push_str(&value.to_string()),
+            Some((_, Argument::Length(value))) => out.push_str(&value.to_string()),
+            None => out.push('?'),
+        }
+        rest = &rest[close + 1..];
+    }
+    out.push_str(rest);
+    out
+}

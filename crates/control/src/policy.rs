@@ -1,0 +1,234 @@
+//! The questions on which controls differ or sources disagree, each with all its readings.
+//!
+//! A control definition in `data/controls` answers every one of them; no code asks for a control's name.
+
+use serde::Deserialize;
+
+macro_rules! policies {
+    ($($(#[$doc:meta])* $field:ident: $name:ident { $($(#[$reading:meta])* $variant:ident),+ $(,)? })+) => {
+        $(
+            $(#[$doc])*
+            #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+            #[serde(rename_all = "kebab-case")]
+            pub enum $name { $($(#[$reading])* $variant),+ }
+        )+
+
+        /// A control's answers.
+        #[derive(Clone, Copy, Debug, Deserialize)]
+        #[serde(rename_all = "kebab-case", deny_unknown_fields)]
+        pub struct Policies { $($(#[$doc])* pub $field: $name),+ }
+    };
+}
+
+policies! {
+    /// What a length without a decimal point counts.
+    decimal_rule: DecimalRule {
+        /// Least increments, or whole units when the parameter for calculator input is set.
+        ByParameter,
+        /// Whole millimetres, inches or degrees, as on a pocket calculator.
+        AlwaysCalculator,
+    }
+    /// Digits finer than the least increment.
+    fine_digits: FineDigits {
+        /// Cut off towards zero.
+        Cut,
+        /// Rounded to the nearest increment.
+        Round,
+    }
+    /// The absolute and the incremental word of one axis in one block.
+    axis_word_conflict: AxisWordConflict {
+        /// The one that stands later counts.
+        LaterWord,
+        /// The absolute one counts wherever it stands.
+        AbsoluteWins,
+    }
+    /// An arc whose end point does not lie on the circle given by its centre.
+    arc_end_error: ArcEndError {
+        /// An arc with the start radius, then a straight line to the end point.
+        TailLine,
+        /// The radius changes with the angle, so that the end point is met.
+        Spiral,
+        /// The start radius is kept and the centre moved so that both ends fit.
+        Recentre,
+    }
+    /// A negative radius word of an arc.
+    negative_arc_radius: NegativeArcRadius {
+        /// Refused; arcs of 180 degrees and more are given by their centre.
+        Alarm,
+        /// The arc of more than 180 degrees.
+        LongArc,
+    }
+    /// Words for automatic corners of a linear move.
+    corner_words: CornerWords {
+        /// `I`, `K`, `R`, or plain `C` and `R` by parameter, or the same with a comma.
+        Fanuc,
+        /// `L` for the chamfer, `D` for the fillet.
+        LengthAndFillet,
+    }
+    /// Motion codes that the first block of a figure may have.
+    first_figure_code: FirstFigureCode {
+        /// Positioning or a straight cut.
+        RapidOrLinear,
+        /// Arcs too.
+        AnyMotion,
+    }
+    /// How the roughing cycle knows whether the figure has pockets.
+    cycle_type: CycleType {
+        /// Both axes in the figure's first block mean pockets.
+        ByFirstBlock,
+        /// From the figure itself, or by the first block when the parameter says so.
+        ByTypeParameter,
+    }
+    /// What roughing with pockets does.
+    type_two: TypeTwo {
+        /// It exists.
+        Available,
+        /// It is an option that this control does not have.
+        Alarm,
+    }
+    /// A roughing level exactly on a stretch of the figure that is parallel to the cut.
+    coincident_level: CoincidentLevel {
+        /// The cut goes on to the far end of the stretch.
+        Through,
+        /// The cut ends where it first touches the figure.
+        Stop,
+    }
+    /// Where the roughing levels are counted from.
+    level_origin: LevelOrigin {
+        /// The start point moved by the allowances.
+        ShiftedStart,
+        /// The start point itself.
+        Start,
+    }
+    /// Speed of the 45-degree escape after a roughing pass.
+    escape_speed: EscapeSpeed {
+        /// Cutting feed.
+        Feed,
+        /// Rapid traverse.
+        Rapid,
+    }
+    /// A pattern repeating cycle with one pass.
+    single_pattern_pass: SinglePatternPass {
+        /// One pass, at the allowance.
+        Once,
+        /// Two passes.
+        Twice,
+    }
+    /// Radial distances given by integer words of the grooving cycles.
+    groove_words: GrooveWords {
+        /// Radius values.
+        Radius,
+        /// Diameter values.
+        Diameter,
+    }
+    /// Units of the integer words of grooving and threading cycles.
+    cycle_integer_words: CycleIntegerWords {
+        /// Least increments; a point is refused.
+        Increments,
+        /// Least increments or millimetres, as the unit parameter says; a point is taken in millimetres only.
+        ByUnitParameter,
+    }
+    /// Direction of the relief at the bottom of a single groove.
+    groove_relief_alone: GrooveReliefAlone {
+        /// The sign of the relief.
+        BySign,
+        /// Always towards plus.
+        AlwaysPlus,
+    }
+    /// How the least depth limits the passes of the threading cycle.
+    thread_depth_clamp: ThreadDepthClamp {
+        /// Each increment is at least the least depth: depths add up.
+        Accumulate,
+        /// Each depth is the larger of the root rule and its predecessor in that rule plus the least depth.
+        Formula,
+    }
+    /// Nose angles that the threading cycle takes.
+    thread_angles: ThreadAngles {
+        /// 0, 29, 30, 55, 60 and 80 degrees.
+        Listed,
+        /// 0 to 99 degrees.
+        Any,
+    }
+    /// When a figure that turns back is refused by type I roughing.
+    monotony_check: MonotonyCheck {
+        /// With the parameter for checking the figure.
+        ByFigureCheck,
+        /// With the parameter for checking monotony.
+        ByMonotonyBit,
+        /// With the parameters for monotony and for the type.
+        ByMonotonyBits,
+        /// With the word K1 in the block that runs the cycle.
+        ByWord,
+    }
+    /// Where execution goes on after a roughing cycle.
+    after_roughing: AfterRoughing {
+        /// Behind the last block of the figure.
+        BehindFigure,
+        /// Behind the figure when it follows the cycle at once, else behind the cycle block.
+        BehindAdjacentFigure,
+    }
+    /// The sequence number of a figure found twice.
+    duplicate_sequence: DuplicateSequence {
+        /// The first found counts, with a warning.
+        FirstWithWarning,
+        /// Refused.
+        Alarm,
+    }
+    /// A block without axis words while a single cycle is in force.
+    single_cycle_repeat: SingleCycleRepeat {
+        /// The cycle runs again.
+        OnEveryBlock,
+        /// Only axis words run it again.
+        OnWordsOnly,
+    }
+    /// A taper of a single cycle whose sign and size make the path cross itself.
+    taper_sign: TaperSign {
+        /// Refused.
+        Alarm,
+        /// Cut, with a warning.
+        Warn,
+    }
+    /// A thread while no spindle speed is commanded.
+    thread_without_spindle: ThreadWithoutSpindle {
+        /// Refused before the first pass.
+        Alarm,
+        /// The axis waits for the spindle; a warning says so.
+        Warn,
+    }
+}
+
+/// Which alarm numbers a control shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AlarmIds {
+    /// Three digits.
+    Three,
+    /// Two letters and four digits.
+    Four,
+    /// Own names where no number is known.
+    Gsk,
+}
+
+/// Limits of a control, each with an alarm of its own.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct Limits {
+    /// Digits of a length.
+    pub number_digits: u8,
+    /// Digits of a sequence number.
+    pub sequence_digits: u8,
+    /// Digits of a program number.
+    pub program_digits: u8,
+    /// Digits of a spindle speed.
+    pub spindle_digits: u8,
+    /// Digits of a tool word that are read as station and offset.
+    pub tool_digits: u8,
+    /// Highest offset number.
+    pub offset_number_max: u32,
+    /// Deepest nesting of subprograms.
+    pub call_depth_max: u8,
+    /// Blocks without a move that may stand between a corner and the line it leads to.
+    pub corner_gap_max: u8,
+    /// Most blocks in the figure of a cycle.
+    pub figure_blocks_max: u32,
+}

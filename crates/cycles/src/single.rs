@@ -1,0 +1,279 @@
+//! The single cycles: one box of four moves, straight or tapered, and the box whose cut is a thread.
+//!
+//! In: a [`BoxRequest`] or a [`ThreadOnceRequest`]. Out: infeed, cut, out, home. The box leaves the cut at the feed,
+//! the thread at rapid traverse.
+//!
+//! Not here: which words persist from block to block, repetition for several starts. Source: the single cycles in
+//! chapter 13 of the language reference.
+
+use turnwright_canon::{Action, Phase};
+use turnwright_units::{Angle, Lead, Length, Position, Radius, WorkTip};
+
+use crate::plane::{Plane, in_range};
+use crate::threading::{LineWords, Part, ThreadLine};
+use crate::{Context, CycleMove, Misuse, Tool};
+
+/// The axis that a box cycle moves first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum FirstAxis {
+    /// X: turning along Z, taper on the diameter.
+    X,
+    /// Z: facing along X, taper on the face.
+    Z,
+}
+
+/// The words of a box cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoxRequest {
+    /// State the cycle starts in.
+    pub context: Context,
+    /// Axis of the infeed.
+    pub first: FirstAxis,
+    /// Where the cut ends.
+    pub end: Position<WorkTip>,
+    /// Begin of the cut less its end, along the axis of the infeed; radius for X; signed.
+    pub taper: Length,
+}
+
+/// The moves of a box cycle.
+#[derive(Clone, Debug)]
+pub struct BoxCycle {
+    context: Context,
+    corners: [Position<WorkTip>; 3],
+    tool: Tool,
+    done: usize,
+}
+
+/// Plans a box cycle.
+///
+/// # Errors
+/// [`Misuse::OutOfRange`].
+pub fn box_cycle(request: BoxRequest) -> Result<BoxCycle, Misuse> {
+    let context = request.context;
+    in_range(&[context.start.x.0, context.start.z, request.end.x.0, request.end.z, request.taper])?;
+    let plane = Plane::new(request.first == FirstAxis::X, context.increment);
+    let (start, end) = (plane.split(context.start), plane.split(request.end));
+    let corners = [
+        plane.place(end.0 + request.taper.nm(), start.1),
+        plane.place(end.0, end.1),
+        plane.place(start.0, end.1),
+    ];
+    Ok(BoxCycle { context, corners, tool: Tool::new(context.start), done: 0 })
+}
+
+impl BoxCycle {
+    /// No more moves than this.
+    pub const fn move_estimate(&self) -> u64 {
+        4
+    }
+
+    fn advance(&mut self) -> Option<CycleMove> {
+        let [begin, end, out] = self.corners;
+        let (action, phase): (Action, Phase) = match self.done {
+            0 => (self.context.rapid(begin), Phase::Infeed),
+            1 => (self.context.line(end), Phase::Cut),
+            2 => (self.context.line(out), Phase::Out),
+            3 => (self.context.rapid(self.context.start), Phase::Home),
+            _ => return None,
+        };
+        self.done += 1;
+        Some(CycleMove { action, phase, pass: 1, element: None })
+    }
+}
+
+impl Iterator for BoxCycle {
+    type Item = CycleMove;
+
+    fn next(&mut self) -> Option<CycleMove> {
+        loop {
+            let step = self.advance()?;
+            if self.tool.goes(&step) {
+                return Some(step);
+            }
+        }
+    }
+}
+
+/// The words of a single thread pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThreadOnceRequest {
+    /// State the cycle starts in; its feed is not used.
+    pub context: Context,
+    /// Where the thread ends.
+    pub end: Position<WorkTip>,
+    /// Radius at the start of the thread less radius at its end, signed.
+    pub taper: Radius,
+    /// Advance per revolution, along the longer axis of the thread.
+    pub lead: Lead,
+    /// Spindle angle at which the pass starts.
+    pub start_angle: Angle,
+    /// Length of the run-out along Z; zero: none.
+    pub run_out: Length,
+    /// Angle of the run-out from Z, degrees below 90; zero: 45.
+    pub run_out_angle_deg: u8,
+}
+
+/// The moves of a single thread pass.
+#[derive(Clone, Debug)]
+pub struct ThreadOnce {
+    line: ThreadLine,
+    part: Part,
+    tool: Tool,
+}
+
+/// Plans a single thread pass.
+///
+/// # Errors
+/// [`Misuse::NoThread`], [`Misuse::LeadNotPositive`], [`Misuse::RunOutNegative`], [`Misuse::RunOutAngle`],
+/// [`Misuse::OutOfRange`].
+pub fn thread_once(request: ThreadOnceRequest) -> Result<ThreadOnce, Misuse> {
+    let ThreadOnceRequest { context, end, taper, lead, start_angle, run_out, run_out_angle_deg } = request;
+    let mut line =
+        ThreadLine::new(LineWords { context, end, taper, run_out, run_out_angle_deg, lead, start_angle })?;
+    line.fit_run_out(0.0, 0.0);
+    Ok(ThreadOnce { line, part: Part::Infeed, tool: Tool::new(context.start) })
+}
+
+impl ThreadOnce {
+    /// No more moves than this.
+    pub const fn move_estimate(&self) -> u64 {
+        5
+    }
+
+    /// The run-out that is made, along Z, when the one asked for does not fit between thread and start point.
+    pub fn run_out_shortened(&self) -> Option<Length> {
+        self.line.shortened()
+    }
+
+    fn advance(&mut self) -> Option<CycleMove> {
+        let (action, phase) = self.line.step(self.part, 0.0, 0.0)?;
+        self.part = self.part.after();
+        Some(CycleMove { action, phase, pass: 1, element: None })
+    }
+}
+
+impl Iterator for ThreadOnce {
+    type Item = CycleMove;
+
+    fn next(&mut self) -> Option<CycleMove> {
+        loop {
+            let step = self.advance()?;
+            if self.tool.goes(&step) {
+                return Some(step);
+            }
+        }
+    }
+}
+
+/// Whether a taper makes the path of a single cycle cross itself: it points away from the cut and is longer than the
+/// infeed. Some controls alarm, others cut it; so it is a question and not a refusal.
+pub fn taper_crosses_start(
+    first: FirstAxis,
+    start: Position<WorkTip>,
+    end: Position<WorkTip>,
+    taper: Length,
+) -> bool {
+    let infeed = match first {
+        FirstAxis::X => (end.x - start.x).0,
+        FirstAxis::Z => end.z - start.z,
+    };
+    taper.signum() * infeed.signum() <= 0 && taper.abs() > infeed.abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use turnwright_canon::{RapidPath, Shape};
+    use turnwright_units::{Diameter, Feed, FeedPerRevolution, LeastIncrement};
+
+    use super::*;
+
+    fn at(diameter: i32, z: i32) -> Position<WorkTip> {
+        Position::new(Diameter(Length::from_mm(diameter)).to_radius(), Length::from_mm(z))
+    }
+
+    fn context() -> Context {
+        Context {
+            start: at(32, 1),
+            increment: LeastIncrement::METRIC_B,
+            feed: Feed::PerRevolution(FeedPerRevolution(Length::from_nm(150_000))),
+            rapid: RapidPath::EachAxis,
+        }
+    }
+
+    fn corners(cycle: impl Iterator<Item = CycleMove>) -> Vec<Position<WorkTip>> {
+        cycle.filter_map(|step| step.action.end_point()).collect()
+    }
+
+    #[test]
+    fn a_tapered_box_begins_at_end_plus_taper() {
+        let request = BoxRequest {
+            context: context(),
+            first: FirstAxis::X,
+            end: at(26, -25),
+            taper: Length::from_mm(-3),
+        };
+        let cycle = box_cycle(request).expect("a box");
+        let kinds: Vec<_> = cycle.clone().map(|step| matches!(step.action, Action::Rapid { .. })).collect();
+        assert_eq!(kinds, [true, false, false, true]);
+        assert_eq!(corners(cycle), [at(20, 1), at(26, -25), at(32, -25), at(32, 1)]);
+    }
+
+    #[test]
+    fn a_facing_box_moves_z_first() {
+        let request = BoxRequest {
+            context: context(),
+            first: FirstAxis::Z,
+            end: at(10, -2),
+            taper: Length::from_mm(-1),
+        };
+        let cycle = box_cycle(request).expect("a box");
+        assert_eq!(corners(cycle), [at(32, -3), at(10, -2), at(10, 1), at(32, 1)]);
+    }
+
+    #[test]
+    fn a_box_of_no_size_has_no_moves() {
+        let request =
+            BoxRequest { context: context(), first: FirstAxis::X, end: at(32, 1), taper: Length::ZERO };
+        assert_eq!(box_cycle(request).expect("a box").count(), 0);
+    }
+
+    #[test]
+    fn a_thread_leaves_at_rapid() {
+        let request = ThreadOnceRequest {
+            context: context(),
+            end: at(26, -20),
+            taper: Radius::ZERO,
+            lead: Lead(Length::from_mm(2)),
+            start_angle: Angle::ZERO,
+            run_out: Length::from_mm(2),
+            run_out_angle_deg: 45,
+        };
+        let cycle = thread_once(request).expect("a thread");
+        assert_eq!(cycle.run_out_shortened(), None);
+        assert!(matches!(cycle.clone().nth(3).expect("out").action, Action::Rapid { .. }));
+        assert_eq!(corners(cycle), [at(26, 1), at(26, -18), at(30, -20), at(32, -20), at(32, 1)]);
+        let long =
+            thread_once(ThreadOnceRequest { run_out: Length::from_mm(9), ..request }).expect("a thread");
+        assert_eq!(long.run_out_shortened(), Some(Length::from_mm(3)));
+        let flat = thread_once(ThreadOnceRequest { end: at(26, 1), ..request });
+        assert_eq!(flat.map(|_| ()), Err(Misuse::NoThread));
+    }
+
+    #[test]
+    fn a_taper_against_the_cut_must_fit_into_the_infeed() {
+        let crosses =
+            |taper| taper_crosses_start(FirstAxis::X, at(32, 1), at(26, -25), Length::from_mm(taper));
+        assert!(!crosses(-50));
+        assert!(!crosses(3));
+        assert!(crosses(4));
+    }
+
+    #[test]
+    fn cuts_are_lines_at_the_feed_of_the_block() {
+        let request =
+            BoxRequest { context: context(), first: FirstAxis::X, end: at(26, -25), taper: Length::ZERO };
+        let cut = box_cycle(request).expect("a box").nth(1).expect("a cut");
+        let expected = Action::Feed { to: at(26, -25), shape: Shape::Line, feed: context().feed };
+        assert_eq!((cut.action, cut.phase), (expected, Phase::Cut));
+    }
+}

@@ -1,0 +1,532 @@
+//! Thread cutting in many passes, and what every thread pass has in common.
+//!
+//! In: a [`ThreadRequest`]. Out: pass after pass (infeed along the flank, thread, run-out, out, home), depths from a
+//! [`DepthSchedule`]: equal chip area, never less than the least depth, the finishing allowance last, then spring
+//! passes.
+//!
+//! Not here: the digits of the packed word, several starts (the caller runs the cycle once a start or turns the start
+//! angle), spindle and feed hold. Source: thread cutting, chapter 9 of the cycles.
+
+use turnwright_canon::{Action, Phase};
+use turnwright_units::{Angle, Lead, Length, Position, Radius, WorkTip};
+
+use crate::plane::{in_range, snap_x, snap_z};
+use crate::{Context, CycleMove, Misuse, Tool, pass_number};
+
+/// What happens to the depths once a pass would take less than the least depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clamp {
+    /// Each pass goes at least the least depth below the one before: from the first clamped pass on, steps are equal.
+    Accumulate,
+    /// Each pass goes at least the least depth below where the *formula* had the one before: after two clamped passes
+    /// steps shrink again.
+    Formula,
+}
+
+/// The words of thread cutting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThreadRequest {
+    /// State the cycle starts in; its feed is not used.
+    pub context: Context,
+    /// Where the thread ends, at its root (external) or major diameter (internal).
+    pub end: Position<WorkTip>,
+    /// Radius at the start of the thread less radius at its end, signed.
+    pub taper: Radius,
+    /// Height of the thread.
+    pub height: Radius,
+    /// Depth of the first pass.
+    pub first_depth: Radius,
+    /// Least depth of a pass; zero: none.
+    pub min_depth: Radius,
+    /// What the roughing passes leave.
+    pub finishing_allowance: Radius,
+    /// Passes at full height, at least 1: the first takes the allowance, the others nothing.
+    pub finishing_passes: u32,
+    /// Length of the run-out along Z; zero: none.
+    pub run_out: Length,
+    /// Angle of the run-out from Z, degrees below 90; zero: 45.
+    pub run_out_angle_deg: u8,
+    /// Angle between the flanks, degrees below 180: the start moves along half of it. Zero: straight in.
+    pub nose_angle_deg: u8,
+    /// Advance per revolution, along the longer axis of the thread.
+    pub lead: Lead,
+    /// Spindle angle at which the passes start.
+    pub start_angle: Angle,
+    /// Least depth policy.
+    pub clamp: Clamp,
+}
+
+/// The depths of a thread's passes below the crest, radius, in millimetres, not rounded.
+#[derive(Clone, Debug)]
+pub struct DepthSchedule {
+    first: f64,
+    least: f64,
+    cap: f64,
+    height: f64,
+    clamp: Clamp,
+    /// Roughing passes so far and the depth of the last.
+    count: u64,
+    depth: f64,
+    finishing_left: u32,
+}
+
+/// The depths of a thread's passes: rising to `height` less `finishing_allowance`, then `finishing_passes` times
+/// `height`.
+///
+/// # Errors
+/// [`Misuse::HeightNotPositive`], [`Misuse::FirstDepthNotPositive`], [`Misuse::MinDepthNegative`],
+/// [`Misuse::MinDepthAboveHeight`], [`Misuse::AllowanceNegative`], [`Misuse::AllowanceNotBelowHeight`],
+/// [`Misuse::FinishingPassesZero`], [`Misuse::OutOfRange`].
+pub fn depth_schedule(
+    height: Radius,
+    first_depth: Radius,
+    min_depth: Radius,
+    finishing_allowance: Radius,
+    finishing_passes: u32,
+    clamp: Clamp,
+) -> Result<DepthSchedule, Misuse> {
+    in_range(&[height.0, first_depth.0, min_depth.0, finishing_allowance.0])?;
+    let refusals = [
+        (height.0.nm() <= 0, Misuse::HeightNotPositive),
+        (first_depth.0.nm() <= 0, Misuse::FirstDepthNotPositive),
+        (min_depth.0.nm() < 0, Misuse::MinDepthNegative),
+        (min_depth > height, Misuse::MinDepthAboveHeight),
+        (finishing_allowance.0.nm() < 0, Misuse::AllowanceNegative),
+        (finishing_allowance >= height, Misuse::AllowanceNotBelowHeight),
+        (finishing_passes == 0, Misuse::FinishingPassesZero),
+    ];
+    if let Some((_, misuse)) = refusals.into_iter().find(|&(refused, _)| refused) {
+        return Err(misuse);
+    }
+    Ok(DepthSchedule {
+        first: nm(first_depth.0),
+        least: nm(min_depth.0),
+        cap: nm((height - finishing_allowance).0),
+        height: nm(height.0),
+        clamp,
+        count: 0,
+        depth: 0.0,
+        finishing_left: finishing_passes,
+    })
+}
+
+impl DepthSchedule {
+    /// No more passes than this.
+    pub fn pass_estimate(&self) -> u64 {
+        let ratio = self.cap / self.first;
+        let by_area = ratio * ratio;
+        let passes = match self.clamp {
+            Clamp::Accumulate if self.least > 0.0 => by_area.min(self.cap / self.least + 1.0),
+            _ => by_area,
+        };
+        (passes.ceil() as u64).saturating_add(1).saturating_add(u64::from(self.finishing_left))
+    }
+
+    /// The next depth, nanometres.
+    fn next_nm(&mut self) -> Option<f64> {
+        if self.depth < self.cap {
+            self.count = self.count.saturating_add(1);
+            self.depth = self.rough_depth().min(self.cap);
+            return Some(self.depth);
+        }
+        self.finishing_left = self.finishing_left.checked_sub(1)?;
+        Some(self.height)
+    }
+
+    fn rough_depth(&self) -> f64 {
+        if self.count == 1 {
+            return self.first;
+        }
+        let by_area = |count: u64| self.first * (count as f64).sqrt();
+        let before = match self.clamp {
+            Clamp::Accumulate => self.depth,
+            Clamp::Formula => by_area(self.count - 1),
+        };
+        by_area(self.count).max(before + self.least)
+    }
+}
+
+impl Iterator for DepthSchedule {
+    type Item = f64;
+
+    fn next(&mut self) -> Option<f64> {
+        self.next_nm().map(|depth| depth / 1e6)
+    }
+}
+
+/// The moves of thread cutting.
+#[derive(Clone, Debug)]
+pub struct Threading {
+    line: ThreadLine,
+    schedule: DepthSchedule,
+    height: f64,
+    /// Way along Z per depth.
+    flank: f64,
+    depth: f64,
+    pass: u64,
+    part: Part,
+    tool: Tool,
+}
+
+/// Plans thread cutting.
+///
+/// # Errors
+/// Those of [`depth_schedule`], [`Misuse::NoThread`], [`Misuse::LeadNotPositive`], [`Misuse::RunOutNegative`],
+/// [`Misuse::RunOutAngle`], [`Misuse::NoseAngle`], [`Misuse::ThreadTooShort`].
+pub fn thread(request: ThreadRequest) -> Result<Threading, Misuse> {
+    let mut schedule = depth_schedule(
+        request.height,
+        request.first_depth,
+        request.min_depth,
+        request.finishing_allowance,
+        request.finishing_passes,
+        request.clamp,
+    )?;
+    if request.nose_angle_deg >= 180 {
+        return Err(Misuse::NoseAngle);
+    }
+    let flank = half_angle_tangent(request.nose_angle_deg);
+    let mut line = ThreadLine::new(LineWords {
+        context: request.context,
+        end: request.end,
+        taper: request.taper,
+        run_out: request.run_out,
+        run_out_angle_deg: request.run_out_angle_deg,
+        lead: request.lead,
+        start_angle: request.start_angle,
+    })?;
+    let height = nm(request.height.0);
+    if flank * height >= line.length.abs() {
+        return Err(Misuse::ThreadTooShort);
+    }
+    line.outward = if request.context.start.x > request.end.x { 1.0 } else { -1.0 };
+    let depth = schedule.next_nm().unwrap_or(height);
+    // The first pass has the least room to run out sideways, the last the shortest thread to do it in.
+    line.fit_run_out(height - depth, flank * height);
+    let tool = Tool::new(request.context.start);
+    Ok(Threading { line, schedule, height, flank, depth, pass: 1, part: Part::Infeed, tool })
+}
+
+impl Threading {
+    /// No more moves than this.
+    pub fn move_estimate(&self) -> u64 {
+        // The depth of the first pass has been taken from the schedule already; the estimate counts it still.
+        self.schedule.pass_estimate().saturating_mul(5)
+    }
+
+    /// The run-out that is made, along Z, when the one asked for does not fit between thread and start point; the
+    /// same for all passes.
+    pub fn run_out_shortened(&self) -> Option<Length> {
+        self.line.shortened()
+    }
+
+    fn advance(&mut self) -> Option<CycleMove> {
+        let (stock, advance) = (self.height - self.depth, self.flank * self.depth);
+        let (action, phase) = self.line.step(self.part, stock, advance)?;
+        let step = CycleMove { action, phase, pass: pass_number(self.pass), element: None };
+        self.part = self.part.after();
+        if self.part == Part::Done
+            && let Some(depth) = self.schedule.next_nm()
+        {
+            (self.depth, self.part) = (depth, Part::Infeed);
+            self.pass = self.pass.saturating_add(1);
+        }
+        Some(step)
+    }
+}
+
+impl Iterator for Threading {
+    type Item = CycleMove;
+
+    fn next(&mut self) -> Option<CycleMove> {
+        loop {
+            let step = self.advance()?;
+            if self.tool.goes(&step) {
+                return Some(step);
+            }
+        }
+    }
+}
+
+/// The parts of a thread pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    Infeed,
+    Thread,
+    Chamfer,
+    Out,
+    Home,
+    Done,
+}
+
+impl Part {
+    pub(crate) const fn after(self) -> Self {
+        match self {
+            Self::Infeed => Self::Thread,
+            Self::Thread => Self::Chamfer,
+            Self::Chamfer => Self::Out,
+            Self::Out => Self::Home,
+            Self::Home | Self::Done => Self::Done,
+        }
+    }
+}
+
+/// The words that every thread has.
+pub(crate) struct LineWords {
+    pub(crate) context: Context,
+    pub(crate) end: Position<WorkTip>,
+    pub(crate) taper: Radius,
+    pub(crate) run_out: Length,
+    pub(crate) run_out_angle_deg: u8,
+    pub(crate) lead: Lead,
+    pub(crate) start_angle: Angle,
+}
+
+/// The line that a finished thread follows, and how a pass leaves it. Nanometres, radius.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ThreadLine {
+    context: Context,
+    end_x: f64,
+    end_z: f64,
+    /// From start to end along Z, signed.
+    pub(crate) length: f64,
+    taper: f64,
+    /// 1 away from the axis, −1 towards it, 0 when the start gives no side.
+    pub(crate) outward: f64,
+    asked_run_out: f64,
+    run_out: f64,
+    /// Way along X per way along Z in the run-out.
+    slope: f64,
+    lead: Lead,
+    start_angle: Angle,
+}
+
+impl ThreadLine {
+    pub(crate) fn new(words: LineWords) -> Result<Self, Misuse> {
+        let LineWords { context, end, taper, run_out, run_out_angle_deg, lead, start_angle } = words;
+        in_range(&[context.start.x.0, context.start.z, end.x.0, end.z, taper.0, run_out, lead.0])?;
+        let refusals = [
+            (context.start.z == end.z, Misuse::NoThread),
+            (lead.0.nm() <= 0, Misuse::LeadNotPositive),
+            (run_out.nm() < 0, Misuse::RunOutNegative),
+            (run_out_angle_deg >= 90, Misuse::RunOutAngle),
+        ];
+        if let Some((_, misuse)) = refusals.into_iter().find(|&(refused, _)| refused) {
+            return Err(misuse);
+        }
+        Ok(Self {
+            context,
+            end_x: nm(end.x.0),
+            end_z: nm(end.z),
+            length: nm(end.z - context.start.z),
+            taper: nm(taper.0),
+            outward: (context.start.x - end.x).0.signum() as f64,
+            asked_run_out: nm(run_out),
+            run_out: nm(run_out),
+            slope: tangent(run_out_angle_deg),
+            lead,
+            start_angle,
+        })
+    }
+
+    /// Shortens the run-out so that no pass leaves the room between thread and start point. `stock` is what the
+    /// shallowest pass leaves on the root, `advance` how far the start of the deepest has moved along Z.
+    pub(crate) fn fit_run_out(&mut self, stock: f64, advance: f64) {
+        let room = self.outward * (nm(self.context.start.x.0) - self.end_x) - stock;
+        // Along the run-out the thread's own taper brings the tool nearer to the start point, or further off.
+        let rise = self.slope + self.outward * self.taper / self.length.abs();
+        let by_room = if rise > 0.0 { room.max(0.0) / rise } else { f64::INFINITY };
+        let by_room = if self.outward == 0.0 { 0.0 } else { by_room };
+        self.run_out = self.asked_run_out.min(by_room).min(self.length.abs() - advance).max(0.0);
+    }
+
+    /// The run-out made, when it is not the one asked for.
+    pub(crate) fn shortened(&self) -> Option<Length> {
+        (self.run_out < self.asked_run_out).then(|| Length::from_nm(self.run_out as i64))
+    }
+
+    /// One part of the pass that leaves `stock` on the root and starts `advance` further along Z.
+    pub(crate) fn step(&self, part: Part, stock: f64, advance: f64) -> Option<(Action, Phase)> {
+        let context = &self.context;
+        let forward = self.length.signum();
+        let leave = self.end_z - forward * self.run_out;
+        Some(match part {
+            Part::Infeed => {
+                let begin = self.end_z - self.length + forward * advance;
+                (context.rapid(self.on_line(begin, stock)), Phase::Infeed)
+            }
+            Part::Thread => (self.threaded(self.on_line(leave, stock), self.lead), Phase::Thread),
+            Part::Chamfer => {
+                let x = self.radius(leave, stock) + self.outward * self.run_out * self.slope;
+                (self.threaded(self.place(x, self.end_z), self.run_out_lead()), Phase::Chamfer)
+            }
+            Part::Out => {
+                let z = snap_z(self.end_z, context.increment);
+                (context.rapid(Position::new(context.start.x, z)), Phase::Out)
+            }
+            Part::Home => (context.rapid(context.start), Phase::Home),
+            Part::Done => return None,
+        })
+    }
+
+    const fn threaded(&self, to: Position<WorkTip>, lead: Lead) -> Action {
+        Action::Thread { to, lead, lead_end: None, start_angle: self.start_angle }
+    }
+
+    fn radius(&self, z: f64, stock: f64) -> f64 {
+        self.end_x + self.outward * stock + self.taper * ((self.end_z - z) / self.length)
+    }
+
+    fn on_line(&self, z: f64, stock: f64) -> Position<WorkTip> {
+        self.place(self.radius(z, stock), z)
+    }
+
+    fn place(&self, x: f64, z: f64) -> Position<WorkTip> {
+        let increment = self.context.increment;
+        Position::new(snap_x(x, increment), snap_z(z, increment))
+    }
+
+    /// Lead along the longer axis of the run-out, so that Z keeps the pace it has in the thread.
+    fn run_out_lead(&self) -> Lead {
+        let steep = (self.taper / self.length).abs();
+        if steep <= 1.0 && self.slope <= 1.0 {
+            return self.lead;
+        }
+        let along_z = nm(self.lead.0) / steep.max(1.0);
+        let lead = (along_z * self.slope.max(1.0)).round().clamp(1.0, 1e16);
+        Lead(Length::from_nm(lead as i64))
+    }
+}
+
+const fn nm(length: Length) -> f64 {
+    length.nm() as f64
+}
+
+/// Tangent of an angle in whole degrees, 0 standing for 45.
+fn tangent(degrees: u8) -> f64 {
+    // Exactly 1 for the usual angle: a last digit of the tangent must not decide a rounding.
+    if degrees == 0 || degrees == 45 { 1.0 } else { libm::tan(f64::from(degrees).to_radians()) }
+}
+
+fn half_angle_tangent(degrees: u8) -> f64 {
+    if degrees == 90 { 1.0 } else { libm::tan((f64::from(degrees) / 2.0).to_radians()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use turnwright_canon::RapidPath;
+    use turnwright_units::{Feed, FeedPerRevolution, LeastIncrement};
+
+    use super::*;
+
+    fn um(micrometres: i64) -> Radius {
+        Radius(Length::from_nm(micrometres * 1_000))
+    }
+
+    fn request() -> ThreadRequest {
+        let context = Context {
+            start: Position::new(um(12_500), Length::from_mm(5)),
+            increment: LeastIncrement::METRIC_B,
+            feed: Feed::PerRevolution(FeedPerRevolution(Length::ZERO)),
+            rapid: RapidPath::EachAxis,
+        };
+        ThreadRequest {
+            context,
+            end: Position::new(um(8_700), Length::from_mm(-20)),
+            taper: Radius::ZERO,
+            height: um(1_300),
+            first_depth: um(400),
+            min_depth: um(100),
+            finishing_allowance: um(50),
+            finishing_passes: 2,
+            run_out: Length::from_mm(2),
+            run_out_angle_deg: 0,
+            nose_angle_deg: 60,
+            lead: Lead(Length::from_mm(2)),
+            start_angle: Angle::ZERO,
+            clamp: Clamp::Accumulate,
+        }
+    }
+
+    fn refused(request: ThreadRequest) -> Misuse {
+        thread(request).map(|_| ()).expect_err("refused")
+    }
+
+    #[test]
+    fn each_wrong_word_has_its_name() {
+        let zero = Radius::ZERO;
+        assert_eq!(refused(ThreadRequest { height: zero, ..request() }), Misuse::HeightNotPositive);
+        assert_eq!(refused(ThreadRequest { first_depth: zero, ..request() }), Misuse::FirstDepthNotPositive);
+        assert_eq!(refused(ThreadRequest { min_depth: um(-1), ..request() }), Misuse::MinDepthNegative);
+        assert_eq!(refused(ThreadRequest { min_depth: um(1_301), ..request() }), Misuse::MinDepthAboveHeight);
+        assert_eq!(
+            refused(ThreadRequest { finishing_allowance: um(-1), ..request() }),
+            Misuse::AllowanceNegative
+        );
+        let all = ThreadRequest { finishing_allowance: um(1_300), ..request() };
+        assert_eq!(refused(all), Misuse::AllowanceNotBelowHeight);
+        assert_eq!(refused(ThreadRequest { finishing_passes: 0, ..request() }), Misuse::FinishingPassesZero);
+        assert_eq!(refused(ThreadRequest { nose_angle_deg: 180, ..request() }), Misuse::NoseAngle);
+        assert_eq!(refused(ThreadRequest { run_out_angle_deg: 90, ..request() }), Misuse::RunOutAngle);
+        assert_eq!(
+            refused(ThreadRequest { run_out: Length::from_mm(-1), ..request() }),
+            Misuse::RunOutNegative
+        );
+        assert_eq!(refused(ThreadRequest { lead: Lead(Length::ZERO), ..request() }), Misuse::LeadNotPositive);
+        let flat = Position::new(um(8_700), Length::from_mm(5));
+        assert_eq!(refused(ThreadRequest { end: flat, ..request() }), Misuse::NoThread);
+        let short = Position::new(um(8_700), Length::from_nm(4_500_000));
+        assert_eq!(refused(ThreadRequest { end: short, ..request() }), Misuse::ThreadTooShort);
+    }
+
+    #[test]
+    fn both_readings_of_the_least_depth() {
+        let depths = |clamp| {
+            let schedule = depth_schedule(um(1_300), um(400), um(100), um(50), 1, clamp).expect("depths");
+            schedule.map(|depth| (depth * 1e4).round() as i64).collect::<Vec<_>>()
+        };
+        let accumulate = [4_000, 5_657, 6_928, 8_000, 9_000, 10_000, 11_000, 12_000, 12_500, 13_000];
+        assert_eq!(depths(Clamp::Accumulate), accumulate);
+        let formula = [4_000, 5_657, 6_928, 8_000, 9_000, 9_944, 10_798, 11_583, 12_314, 12_500, 13_000];
+        assert_eq!(depths(Clamp::Formula), formula);
+    }
+
+    #[test]
+    fn without_allowance_the_finishing_passes_follow_the_full_depth() {
+        let schedule = depth_schedule(um(500), um(600), um(0), um(0), 2, Clamp::Accumulate).expect("depths");
+        assert_eq!(schedule.collect::<Vec<_>>(), [0.5, 0.5, 0.5]);
+    }
+
+    #[test]
+    fn the_run_out_ends_at_the_programmed_end() {
+        let cycle = thread(request()).expect("a thread");
+        assert_eq!(cycle.run_out_shortened(), None);
+        let pass: Vec<_> = cycle.take(3).map(|step| (step.phase, step.action.end_point())).collect();
+        assert_eq!(pass[1], (Phase::Thread, Some(Position::new(um(9_600), Length::from_mm(-18)))));
+        assert_eq!(pass[2], (Phase::Chamfer, Some(Position::new(um(11_600), Length::from_mm(-20)))));
+    }
+
+    #[test]
+    fn a_run_out_that_does_not_fit_is_shortened() {
+        // Crest of the first pass at radius 9.6, start at 12.5: 2.9 mm of room.
+        let asked = ThreadRequest { run_out: Length::from_mm(4), ..request() };
+        let cycle = thread(asked).expect("a thread");
+        assert_eq!(cycle.run_out_shortened(), Some(Length::from_nm(2_900_000)));
+        let mut ends =
+            cycle.filter(|step| step.phase == Phase::Chamfer).filter_map(|step| step.action.end_point());
+        assert!(ends.all(|to| to.x <= asked.context.start.x && to.z == asked.end.z));
+    }
+
+    #[test]
+    fn a_tapered_thread_is_shifted_bodily() {
+        let asked =
+            ThreadRequest { taper: um(-1_000), nose_angle_deg: 0, run_out: Length::ZERO, ..request() };
+        let starts = |phase| {
+            let cycle = thread(asked).expect("a thread");
+            cycle.filter(move |step| step.phase == phase).filter_map(|step| step.action.end_point())
+        };
+        for (begin, end) in starts(Phase::Infeed).zip(starts(Phase::Thread)) {
+            assert_eq!(begin.x - end.x, um(-1_000));
+        }
+    }
+}

@@ -1,0 +1,795 @@
+// The report's behaviour. In: the run and the texts, embedded as JSON. Nothing is fetched, nothing is stored.
+// Coordinates are millimetres, X as a radius until it is shown; angles turn from Z towards X.
+"use strict";
+(() => {
+  const run = JSON.parse(document.getElementById("turnwright-run").textContent);
+  const texts = JSON.parse(document.getElementById("turnwright-texts").textContent);
+  const byId = (id) => document.getElementById(id);
+  const KINDS = ["rapid", "feed", "thread"];
+  const SIGNS = { alarm: "■", error: "■", warning: "▲", note: "●" };
+  const RANKS = ["note", "warning", "error", "alarm"];
+
+  // ---- words -------------------------------------------------------------------------------------------
+  let language = run.language;
+  const word = (key, values = {}) =>
+    (texts[key]?.[language] ?? key).replace(/\{(\w+)\}/g, (all, name) => values[name] ?? all);
+  const inLanguage = (both) => both[language] || both.en || both.zh;
+  const number = (value, places) => {
+    const text = (Math.round(value * 10 ** places) / 10 ** places || 0).toFixed(places);
+    return (places > 0 ? text.replace(/\.?0+$/, "") : text).replace("-", "−");
+  };
+  const seconds = (value) => {
+    if (value < 60) return word("time-s", { s: number(value, 1) });
+    const s = Math.round(value);
+    if (s < 3600) return word("time-min", { m: Math.floor(s / 60), s: s % 60 });
+    return word("time-h", { h: Math.floor(s / 3600), m: Math.round((s % 3600) / 60) });
+  };
+  const element = (name, attributes = {}, ...children) => {
+    const made = document.createElement(name);
+    for (const [key, value] of Object.entries(attributes)) {
+      if (key === "onclick") made.addEventListener("click", value);
+      else if (value !== undefined && value !== null) made.setAttribute(key, value);
+    }
+    made.append(...children);
+    return made;
+  };
+
+  // ---- the path as typed arrays ------------------------------------------------------------------------
+  const path = run.path;
+  const segments = path.ends.length / 2;
+  const steps = path.first.length;
+  const startX = new Float32Array(segments), startZ = new Float32Array(segments);
+  const endX = new Float32Array(segments), endZ = new Float32Array(segments);
+  const kind = new Uint8Array(segments);
+  const sweep = new Float32Array(segments), centreX = new Float32Array(segments), centreZ = new Float32Array(segments);
+  const moveOf = new Uint32Array(segments);
+  const segmentEnd = (move) => (move + 1 < steps ? path.first[move + 1] : segments);
+  for (let i = 0; i < segments; i++) {
+    endX[i] = path.ends[2 * i];
+    endZ[i] = path.ends[2 * i + 1];
+    if (i > 0) { startX[i] = endX[i - 1]; startZ[i] = endZ[i - 1]; }
+  }
+  for (let j = 0; j < path.jumps.length; j += 3) {
+    startX[path.jumps[j]] = path.jumps[j + 1];
+    startZ[path.jumps[j]] = path.jumps[j + 2];
+  }
+  for (let j = 0; j < path.arcs.length; j += 4) {
+    const i = path.arcs[j];
+    centreX[i] = path.arcs[j + 1];
+    centreZ[i] = path.arcs[j + 2];
+    sweep[i] = path.arcs[j + 3];
+  }
+  for (let move = 0; move < steps; move++) {
+    for (let i = path.first[move]; i < segmentEnd(move); i++) { moveOf[i] = move; kind[i] = path.kind[move]; }
+  }
+  const arcRadius = (i) => Math.hypot(startX[i] - centreX[i], startZ[i] - centreZ[i]);
+  // Rectangle of each segment; for an arc the whole circle, which is enough to leave out what is not seen.
+  const box = new Float32Array(4 * segments);
+  for (let i = 0; i < segments; i++) {
+    const r = arcRadius(i), bow = sweep[i] !== 0;
+    box[4 * i] = bow ? centreZ[i] - r : Math.min(startZ[i], endZ[i]);
+    box[4 * i + 1] = bow ? centreX[i] - r : Math.min(startX[i], endX[i]);
+    box[4 * i + 2] = bow ? centreZ[i] + r : Math.max(startZ[i], endZ[i]);
+    box[4 * i + 3] = bow ? centreX[i] + r : Math.max(startX[i], endX[i]);
+  }
+  // The place on segment i after the part `t` (0 to 1) of it.
+  const along = (i, t) => {
+    if (sweep[i] === 0) return [startX[i] + (endX[i] - startX[i]) * t, startZ[i] + (endZ[i] - startZ[i]) * t];
+    const r = arcRadius(i), angle = Math.atan2(startX[i] - centreX[i], startZ[i] - centreZ[i]) + sweep[i] * t;
+    return [centreX[i] + r * Math.sin(angle), centreZ[i] + r * Math.cos(angle)];
+  };
+  const lengthOf = (i) =>
+    sweep[i] !== 0 ? arcRadius(i) * Math.abs(sweep[i]) : Math.hypot(endX[i] - startX[i], endZ[i] - startZ[i]);
+
+  // Moves by the line that ran them and by the figure line that shaped them.
+  const movesByLine = new Map();
+  const remember = (line, move) => {
+    if (line === 0) return;
+    if (!movesByLine.has(line)) movesByLine.set(line, []);
+    movesByLine.get(line).push(move);
+  };
+  for (let move = 0; move < steps; move++) {
+    remember(path.line[move], move);
+    if (path.figure[move] !== path.line[move]) remember(path.figure[move], move);
+  }
+
+  // A grid over the path for finding what is near the pointer; long segments are in a list of their own.
+  const grid = (() => {
+    const SIDE = 96, LONG = 400;
+    const space = path.view;
+    const cellZ = Math.max((space[3] - space[2]) / SIDE, 1e-6), cellX = Math.max((space[1] - space[0]) / SIDE, 1e-6);
+    const clampCell = (value) => Math.max(0, Math.min(SIDE - 1, Math.floor(value)));
+    const column = (z) => clampCell((z - space[2]) / cellZ), row = (x) => clampCell((x - space[0]) / cellX);
+    const cells = new Map(), long = [];
+    for (let i = 0; i < segments; i++) {
+      const c0 = column(box[4 * i]), c1 = column(box[4 * i + 2]), r0 = row(box[4 * i + 1]), r1 = row(box[4 * i + 3]);
+      if ((c1 - c0 + 1) * (r1 - r0 + 1) > LONG) { long.push(i); continue; }
+      for (let c = c0; c <= c1; c++) for (let r = r0; r <= r1; r++) {
+        const cell = c * SIDE + r;
+        if (!cells.has(cell)) cells.set(cell, []);
+        cells.get(cell).push(i);
+      }
+    }
+    return {
+      * near(x, z, reach) {
+        yield* long;
+        for (let c = column(z - reach); c <= column(z + reach); c++)
+          for (let r = row(x - reach); r <= row(x + reach); r++) yield* cells.get(c * SIDE + r) ?? [];
+      },
+    };
+  })();
+  const distance = (i, x, z) => {
+    if (sweep[i] !== 0) {
+      const r = arcRadius(i), turn = Math.sign(sweep[i]), full = 2 * Math.PI;
+      const start = Math.atan2(startX[i] - centreX[i], startZ[i] - centreZ[i]);
+      const at = (((Math.atan2(x - centreX[i], z - centreZ[i]) - start) * turn) % full + full) % full;
+      if (at <= Math.abs(sweep[i])) return Math.abs(Math.hypot(x - centreX[i], z - centreZ[i]) - r);
+      return Math.min(Math.hypot(x - startX[i], z - startZ[i]), Math.hypot(x - endX[i], z - endZ[i]));
+    }
+    const dx = endX[i] - startX[i], dz = endZ[i] - startZ[i], square = dx * dx + dz * dz;
+    const t = square > 0 ? Math.max(0, Math.min(1, ((x - startX[i]) * dx + (z - startZ[i]) * dz) / square)) : 0;
+    return Math.hypot(x - startX[i] - dx * t, z - startZ[i] - dz * t);
+  };
+
+  // ---- the state ---------------------------------------------------------------------------------------
+  let selectedFrom = 0, selectedTo = 0;   // lines, 0 for none
+  let pickedMove = -1;                    // the move chosen in the picture
+  let step = steps;                       // moves done
+  let part = 0;                           // how much of the next move is done, while playing
+  let lit = new Uint32Array(0);           // highlighted segments
+  const view = { pxPerMm: 1, x: 0, z: 0 };// what lies in the middle of the plot
+  let fitted = true;
+
+  // ---- the picture -------------------------------------------------------------------------------------
+  const picture = byId("picture");
+  const layers = ["layer-path", "layer-done", "layer-marks"].map((id) => byId(id).getContext("2d"));
+  const [pathLayer, doneLayer, marksLayer] = layers;
+  const LEFT = 62, BOTTOM = 26, CHUCK = 38, PAD = 26;
+  let width = 0, height = 0, doneSegments = 0;
+  let colours = {};
+  const readColours = () => {
+    const style = getComputedStyle(document.documentElement);
+    for (const name of ["paper", "ink", "faint-ink", "rule", "rapid", "feed", "thread", "grid", "centre", "tool", "lit", "lit-core"])
+      colours[name] = style.getPropertyValue("--" + name).trim();
+  };
+  const plotMiddleX = () => LEFT + (width - LEFT) / 2, plotMiddleY = () => (height - BOTTOM) / 2;
+  const toPxX = (z) => plotMiddleX() + (z - view.z) * view.pxPerMm;
+  const toPxY = (x) => plotMiddleY() - (x - view.x) * view.pxPerMm;
+  const toZ = (px) => view.z + (px - plotMiddleX()) / view.pxPerMm;
+  const toX = (py) => view.x - (py - plotMiddleY()) / view.pxPerMm;
+  const LOOK = { rapid: [1.1, [6, 4]], feed: [1.6, []], thread: [1.8, []] };
+
+  const trace = (c, i) => {
+    const r = arcRadius(i) * view.pxPerMm;
+    if (sweep[i] === 0 || r < 0.3) {
+      c.lineTo(toPxX(endZ[i]), toPxY(endX[i]));
+    } else {
+      const start = Math.atan2(startX[i] - centreX[i], startZ[i] - centreZ[i]);
+      c.arc(toPxX(centreZ[i]), toPxY(centreX[i]), r, -start, -(start + sweep[i]), sweep[i] > 0);
+    }
+  };
+  // A colour of the picture, thinned with the paper; transparent strokes would add up where they cross.
+  const thinned = (colour, share) => {
+    const parts = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+    const [ink, paper] = [parts(colour), parts(colours.paper)];
+    return `rgb(${ink.map((one, at) => Math.round(one * share + paper[at] * (1 - share))).join(" ")})`;
+  };
+  // Strokes the segments from..to, or those that `pick` names, kind by kind, without what is outside the plot.
+  // Some hundred segments a stroke: browsers are slow with one path of very many crossing lines.
+  const STROKE_SEGMENTS = 200;
+  const strokeSegments = (c, from, to, pick, look) => {
+    const z0 = toZ(0), z1 = toZ(width), x0 = toX(height), x1 = toX(0);
+    c.lineJoin = c.lineCap = "round";
+    for (let k = 0; k < KINDS.length; k++) {
+      const [lineWidth, dash] = LOOK[KINDS[k]];
+      c.lineWidth = look?.width ?? lineWidth + (look?.wider ?? 0);
+      c.setLineDash(look?.solid ? [] : dash);
+      c.strokeStyle = thinned(look?.colour ?? colours[KINDS[k]], look?.share ?? 1);
+      c.beginPath();
+      let penX = NaN, penZ = NaN, waiting = 0;
+      for (let at = from; at < to; at++) {
+        const i = pick ? pick[at] : at;
+        if (kind[i] !== k) continue;
+        if (box[4 * i] > z1 || box[4 * i + 2] < z0 || box[4 * i + 1] > x1 || box[4 * i + 3] < x0) continue;
+        if (waiting >= STROKE_SEGMENTS) {
+          c.stroke();
+          c.beginPath();
+          penX = NaN;
+          waiting = 0;
+        }
+        if (penX !== startX[i] || penZ !== startZ[i]) c.moveTo(toPxX(startZ[i]), toPxY(startX[i]));
+        trace(c, i);
+        penX = endX[i];
+        penZ = endZ[i];
+        waiting++;
+      }
+      if (waiting > 0) c.stroke();
+    }
+    c.setLineDash([]);
+  };
+  const inPlot = (c, draw) => {
+    c.save();
+    c.beginPath();
+    c.rect(LEFT, 0, width - LEFT, height - BOTTOM);
+    c.clip();
+    draw();
+    c.restore();
+  };
+  const tickStep = (pxPerMm, roomPx) => {
+    const least = roomPx / pxPerMm, power = 10 ** Math.floor(Math.log10(least));
+    return [1, 2, 5, 10].map((digit) => digit * power).find((value) => value >= least * (1 - 1e-9));
+  };
+  const tickLabel = (value, stepMm) => number(value, Math.max(0, -Math.floor(Math.log10(stepMm) + 1e-9)));
+
+  const drawAxes = (c) => {
+    c.font = "12px system-ui, sans-serif";
+    c.lineWidth = 1;
+    const widest = Math.max(...[toZ(LEFT), toZ(width)].map((z) => c.measureText(number(z, 2)).width));
+    const stepZ = tickStep(view.pxPerMm, Math.max(56, widest + 22)), stepX = tickStep(view.pxPerMm / 2, 34);
+    c.strokeStyle = colours.grid;
+    c.fillStyle = colours["faint-ink"];
+    c.textAlign = "center";
+    c.textBaseline = "alphabetic";
+    for (let n = Math.ceil(toZ(LEFT) / stepZ); n * stepZ <= toZ(width); n++) {
+      const px = Math.round(toPxX(n * stepZ)) + 0.5;
+      c.beginPath(); c.moveTo(px, 0); c.lineTo(px, height - BOTTOM); c.stroke();
+      const label = tickLabel(n * stepZ, stepZ), half = c.measureText(label).width / 2;
+      if (px - half > LEFT - 8 && px + half < width - 56) c.fillText(label, px, height - 9);
+    }
+    c.textAlign = "right";
+    c.textBaseline = "middle";
+    for (let n = Math.ceil(2 * toX(height - BOTTOM) / stepX); n * stepX <= 2 * toX(0); n++) {
+      const py = Math.round(toPxY(n * stepX / 2)) + 0.5;
+      c.beginPath(); c.moveTo(LEFT, py); c.lineTo(width, py); c.stroke();
+      if (py > 32 && py < height - BOTTOM - 6) c.fillText(tickLabel(n * stepX, stepX), LEFT - 7, py);
+    }
+    c.strokeStyle = colours.rule;
+    c.strokeRect(LEFT + 0.5, -1, width, height - BOTTOM + 0.5);
+    c.fillStyle = colours.ink;
+    c.font = "bold 12px system-ui, sans-serif";
+    c.textAlign = "left";
+    c.textBaseline = "alphabetic";
+    c.fillText(word("picture-axis-x"), 6, 17);
+    c.textAlign = "right";
+    c.fillText(word("picture-axis-z"), width - 8, height - 9);
+  };
+  const drawChuck = (c) => {
+    const centre = toPxY(0), seen = centre > 0 && centre < height - BOTTOM;
+    const middle = seen ? centre : (height - BOTTOM) / 2;
+    const top = Math.max(6, middle - 80), bottom = Math.min(height - BOTTOM - 2, middle + 80);
+    c.save();
+    c.beginPath(); c.rect(LEFT, top, 15, bottom - top); c.clip();
+    c.strokeStyle = colours["faint-ink"];
+    c.lineWidth = 1.5;
+    for (let y = top - 20; y < bottom + 20; y += 7) { c.beginPath(); c.moveTo(LEFT, y + 15); c.lineTo(LEFT + 15, y); c.stroke(); }
+    c.restore();
+    c.strokeStyle = colours["faint-ink"];
+    c.lineWidth = 1;
+    c.strokeRect(LEFT + 0.5, top, 15, bottom - top);
+    c.save();
+    c.font = "11px system-ui, sans-serif";
+    // Beside the centre line, not across it.
+    const half = c.measureText(word("picture-chuck-side")).width / 2 + 8;
+    c.translate(LEFT + 29, !seen ? middle : centre > 2 * half + 8 ? centre - half : centre + half);
+    c.rotate(-Math.PI / 2);
+    c.textAlign = "center";
+    c.fillStyle = colours["faint-ink"];
+    c.fillText(word("picture-chuck-side"), 0, 0);
+    c.restore();
+  };
+  const drawZero = (c) => {
+    const x = toPxX(0), y = toPxY(0);
+    c.beginPath(); c.arc(x, y, 6, 0, 2 * Math.PI);
+    c.fillStyle = colours.paper; c.fill();
+    c.fillStyle = c.strokeStyle = colours.ink;
+    c.lineWidth = 1; c.stroke();
+    for (const start of [-Math.PI / 2, Math.PI / 2]) { c.beginPath(); c.moveTo(x, y); c.arc(x, y, 6, start, start + Math.PI / 2); c.fill(); }
+  };
+  const drawPath = () => {
+    const c = pathLayer;
+    c.clearRect(0, 0, width, height);
+    drawAxes(c);
+    inPlot(c, () => {
+      drawChuck(c);
+      c.strokeStyle = colours.centre;
+      c.lineWidth = 1;
+      c.setLineDash([14, 4, 2, 4]);
+      c.beginPath(); c.moveTo(LEFT, toPxY(0)); c.lineTo(width, toPxY(0)); c.stroke();
+      c.setLineDash([]);
+      strokeSegments(c, 0, segments, null, step < steps ? { share: 0.3 } : null);
+      drawZero(c);
+      if (segments === 0) {
+        c.fillStyle = colours["faint-ink"];
+        c.font = "15px system-ui, sans-serif";
+        c.textAlign = "center";
+        c.fillText(word("picture-no-moves"), plotMiddleX(), plotMiddleY() - 40);
+      }
+    });
+    doneSegments = 0;
+    doneLayer.clearRect(0, 0, width, height);
+    drawDone();
+    drawMarks();
+  };
+  // What is done so far, drawn on; going back starts anew.
+  const drawDone = () => {
+    const wanted = step < steps ? path.first[step] : 0;
+    if (wanted < doneSegments) {
+      doneLayer.clearRect(0, 0, width, height);
+      doneSegments = 0;
+    }
+    if (wanted > doneSegments) {
+      inPlot(doneLayer, () => strokeSegments(doneLayer, doneSegments, wanted, null, { wider: 0.9 }));
+      doneSegments = wanted;
+    }
+  };
+  const drawMarks = () => {
+    const c = marksLayer;
+    c.clearRect(0, 0, width, height);
+    inPlot(c, () => {
+      if (lit.length > 0) {
+        strokeSegments(c, 0, lit.length, lit, { colour: colours.lit, wider: 5, share: 0.5, solid: true });
+        strokeSegments(c, 0, lit.length, lit, { colour: colours["lit-core"], wider: 0.6 });
+      }
+      if (pickedMove >= 0) {
+        strokeSegments(c, path.first[pickedMove], segmentEnd(pickedMove), null, { width: 4.5, colour: colours["lit-core"] });
+        const end = segmentEnd(pickedMove) - 1;
+        c.beginPath(); c.arc(toPxX(endZ[end]), toPxY(endX[end]), 4, 0, 2 * Math.PI);
+        c.fillStyle = colours["lit-core"]; c.fill();
+      }
+      const tool = toolPosition();
+      if (tool && step < steps) {
+        c.beginPath(); c.arc(toPxX(tool[1]), toPxY(tool[0]), 6, 0, 2 * Math.PI);
+        c.fillStyle = colours.tool; c.fill();
+        c.lineWidth = 2; c.strokeStyle = colours.paper; c.stroke();
+      }
+    });
+  };
+  // Where the tool is: the end of what is done, or on the way along the next move.
+  const toolPosition = () => {
+    if (segments === 0) return null;
+    if (step >= steps) return [endX[segments - 1], endZ[segments - 1]];
+    let left = 0;
+    for (let i = path.first[step]; i < segmentEnd(step); i++) left += lengthOf(i);
+    left *= part;
+    for (let i = path.first[step]; i < segmentEnd(step); i++) {
+      const length = lengthOf(i);
+      if (left <= length) return along(i, length > 0 ? left / length : 0);
+      left -= length;
+    }
+    return along(segmentEnd(step) - 1, 1);
+  };
+  let queued = false;
+  const redraw = () => {
+    if (queued) return;
+    queued = true;
+    requestAnimationFrame(() => { queued = false; drawPath(); });
+  };
+
+  // ---- the view ----------------------------------------------------------------------------------------
+  const fit = () => {
+    const [x0, x1, z0, z1] = path.view;
+    const roomZ = Math.max(40, width - LEFT - CHUCK - 2 * PAD), roomX = Math.max(40, height - BOTTOM - 2 * PAD);
+    view.pxPerMm = Math.min(roomZ / Math.max(z1 - z0, 0.1), roomX / Math.max(x1 - x0, 0.1));
+    view.x = (x0 + x1) / 2;
+    view.z = (z0 + z1) / 2 - CHUCK / 2 / view.pxPerMm;
+    fitted = true;
+    redraw();
+  };
+  const zoom = (factor, px = plotMiddleX(), py = plotMiddleY()) => {
+    const z = toZ(px), x = toX(py);
+    view.pxPerMm = Math.max(1e-3, Math.min(1e5, view.pxPerMm * factor));
+    view.z = z - (px - plotMiddleX()) / view.pxPerMm;
+    view.x = x + (py - plotMiddleY()) / view.pxPerMm;
+    fitted = false;
+    redraw();
+  };
+  const pan = (dx, dy) => {
+    view.z -= dx / view.pxPerMm;
+    view.x += dy / view.pxPerMm;
+    fitted = false;
+    redraw();
+  };
+  const resize = () => {
+    const ratio = window.devicePixelRatio || 1;
+    width = picture.clientWidth;
+    height = picture.clientHeight;
+    for (const layer of layers) {
+      layer.canvas.width = Math.round(width * ratio);
+      layer.canvas.height = Math.round(height * ratio);
+      layer.setTransform(ratio, 0, 0, ratio, 0, 0);
+    }
+    if (fitted) fit();
+    drawPath();
+  };
+  const findAt = (px, py) => {
+    const REACH_PX = 9, x = toX(py), z = toZ(px), reach = REACH_PX / view.pxPerMm;
+    let best = -1, least = Infinity;
+    for (const i of grid.near(x, z, reach)) {
+      const away = distance(i, x, z);
+      // Among equals the cut wins over the rapid, and the later over the earlier.
+      const price = away + (kind[i] === 0 ? 2 / view.pxPerMm : 0);
+      if (away <= reach && price <= least) { least = price; best = i; }
+    }
+    return best;
+  };
+
+  // ---- the program -------------------------------------------------------------------------------------
+  const list = byId("program"), rows = byId("rows");
+  const ROW_PX = 20, ROWS_PLAIN = 20000, ROWS_AROUND = 400;
+  let rowsFrom = 1, rowsTo = 0;
+  const foundAt = new Map();
+  run.diagnostics.forEach((found) => {
+    if (found.line === 0) return;
+    if (!foundAt.has(found.line)) foundAt.set(found.line, []);
+    foundAt.get(found.line).push(found);
+  });
+  const makeRow = (line) => {
+    const text = run.program[line - 1], found = foundAt.get(line) ?? [];
+    const code = element("code");
+    let at = 0;
+    for (const one of [...found].sort((a, b) => a.from - b.from)) {
+      if (one.from < at || one.to <= one.from || one.from >= text.length) continue;
+      code.append(text.slice(at, one.from), element("mark", { class: one.severity }, text.slice(one.from, one.to)));
+      at = one.to;
+    }
+    code.append(text.slice(at));
+    const worst = found.reduce((a, b) => (RANKS.indexOf(b.severity) > RANKS.indexOf(a ?? "") ? b.severity : a), null);
+    const row = element("div", { class: "row", role: "option", id: "line-" + line, "data-line": line, "aria-selected": "false" },
+      element("span", { class: "number" }, String(line)),
+      element("span", { class: "sign " + (worst ?? ""), title: worst ? found.map((f) => inLanguage(f.message)).join("\n") : undefined,
+        "aria-label": worst ? word("severity-" + worst) : undefined }, worst ? SIGNS[worst] : ""),
+      code);
+    if (movesByLine.has(line)) row.classList.add("moves");
+    return row;
+  };
+  const makeRows = (from, to) => {
+    rowsFrom = from;
+    rowsTo = to;
+    const all = document.createDocumentFragment();
+    for (let line = from; line <= to; line++) all.append(makeRow(line));
+    rows.replaceChildren(all);
+    rows.style.paddingTop = 4 + (from - 1) * ROW_PX + "px";
+    rows.style.paddingBottom = 4 + (run.program.length - to) * ROW_PX + "px";
+    markRows();
+  };
+  const showRows = (again) => {
+    const all = run.program.length;
+    if (all <= ROWS_PLAIN) { if (again) makeRows(1, all); return; }
+    const top = Math.floor(list.scrollTop / ROW_PX), seen = Math.ceil(list.clientHeight / ROW_PX);
+    if (!again && top >= rowsFrom + 50 - 1 && top + seen <= rowsTo - 50) return;
+    if (!again && ((rowsFrom === 1 && top < 50) || (rowsTo === all && top + seen > all - 50))) {
+      if (top + 1 >= rowsFrom && top + seen <= rowsTo) return;
+    }
+    makeRows(Math.max(1, top - ROWS_AROUND), Math.min(all, top + seen + ROWS_AROUND));
+  };
+  const rowOf = (line) => (line >= rowsFrom && line <= rowsTo ? rows.children[line - rowsFrom] : null);
+  const isMoveSelected = () => pickedMove >= 0;
+  let marked = [];
+  const markRows = () => {
+    for (const row of marked) { row.classList.remove("selected", "current", "shaped"); row.setAttribute("aria-selected", "false"); }
+    marked = [];
+    const mark = (line, name) => {
+      const row = rowOf(line);
+      if (!row) return;
+      row.classList.add(name);
+      if (name === "selected") row.setAttribute("aria-selected", "true");
+      marked.push(row);
+    };
+    for (let line = Math.max(selectedFrom, rowsFrom); selectedFrom > 0 && line <= Math.min(selectedTo, rowsTo); line++) mark(line, "selected");
+    if (isMoveSelected()) mark(path.figure[pickedMove], "shaped");
+    if (step > 0 && step < steps) {
+      mark(path.line[step - 1], "current");
+      mark(path.figure[step - 1], "shaped");
+    }
+    if (selectedFrom > 0) list.setAttribute("aria-activedescendant", "line-" + selectedFrom);
+    else list.removeAttribute("aria-activedescendant");
+  };
+  const scrollTo = (line) => {
+    if (line < 1) return;
+    const top = 4 + (line - 1) * ROW_PX;
+    if (top < list.scrollTop + ROW_PX || top > list.scrollTop + list.clientHeight - 3 * ROW_PX)
+      list.scrollTop = Math.max(0, top - list.clientHeight / 2);
+    showRows(false);
+  };
+
+  // ---- selecting and stepping --------------------------------------------------------------------------
+  const describe = (move) => {
+    const end = segmentEnd(move) - 1, parts = [];
+    const line = path.line[move], figure = path.figure[move];
+    parts.push(`X⌀ ${number(2 * endX[end], 3)}  Z ${number(endZ[end], 3)}`);
+    parts.push(line > 0 ? word("line", { n: line }) : word("other-program"));
+    if (figure > 0 && figure !== line) parts.push(word("figure-line", { n: figure }));
+    if (path.cycle[move] > 0) parts.push(path.cycles[path.cycle[move] - 1]);
+    if (path.pass[move] > 0) parts.push(word("pass", { n: path.pass[move] }));
+    if (path.phase[move] > 0) parts.push(word("phase-" + path.phases[path.phase[move] - 1]));
+    const kindWord = word("kind-" + KINDS[path.kind[move]]);
+    if (path.unit[move] === 0) parts.push(kindWord);
+    else {
+      const unit = ["", "mm-per-rev", "mm-per-min", "mm-per-rev"][path.unit[move]];
+      parts.push(`${path.unit[move] === 3 ? word("lead") : word("feed")} ${number(path.advance[move], 4)} ${word(unit)}`);
+    }
+    if (path.tool[move] > 0) parts.push(word("tool-number", { n: path.tool[move] }));
+    parts.push(word("time-at", { n: seconds(path.elapsed[move]) }));
+    return parts;
+  };
+  const readout = () => {
+    const spans = (parts) => parts.map((text, at) => element("span", {}, at === 0 ? element("b", {}, text) : text));
+    const target = byId("readout");
+    if (pickedMove >= 0) target.replaceChildren(...spans(describe(pickedMove)));
+    else if (step > 0 && step < steps) target.replaceChildren(...spans(describe(step - 1)));
+    else if (step === 0 && steps > 0) target.replaceChildren(...spans([word("readout-start")]));
+    else if (selectedFrom > 0) {
+      const count = new Set(movesOfSelection()).size;
+      target.replaceChildren(...spans([
+        selectedTo > selectedFrom ? word("lines-of", { a: selectedFrom, b: selectedTo }) : word("line", { n: selectedFrom }),
+        count === 0 ? word("no-moves-of-line") : count === 1 ? word("move-of") : word("moves-of", { n: count }),
+        ...(foundAt.get(selectedFrom) ?? []).map((found) => inLanguage(found.message)),
+        ...(count === 1 && selectedTo === selectedFrom ? describe(movesOfSelection()[0]) : []),
+      ]));
+    } else target.replaceChildren(word("readout-none"));
+    byId("count").textContent = word("step-of", { n: step, of: steps });
+    byId("position").value = step;
+  };
+  function movesOfSelection() {
+    const all = [];
+    for (let line = selectedFrom; line > 0 && line <= selectedTo; line++) all.push(...(movesByLine.get(line) ?? []));
+    return all;
+  }
+  const select = (from, to = from, move = -1) => {
+    selectedFrom = from;
+    selectedTo = to;
+    pickedMove = move;
+    const all = new Set();
+    const light = (one) => { for (let i = path.first[one]; i < segmentEnd(one); i++) all.add(i); };
+    movesOfSelection().forEach(light);
+    lit = Uint32Array.from(all).sort();
+    if (from > 0) scrollTo(from);
+    markRows();
+    readout();
+    drawMarks();
+  };
+  const goTo = (to, partDone = 0) => {
+    const before = step;
+    step = Math.max(0, Math.min(steps, to));
+    part = step < steps ? partDone : 0;
+    // The whole path is drawn strongly when all is done, faintly else.
+    if ((before === steps) !== (step === steps)) drawPath();
+    else { drawDone(); drawMarks(); }
+    if (before !== step) {
+      pickedMove = -1;
+      if (step > 0 && step < steps) scrollTo(path.line[step - 1]);
+      markRows();
+      readout();
+      if (step < steps) drawMarks();
+    }
+  };
+  const clearSelection = () => { select(0); };
+
+  // ---- playing -----------------------------------------------------------------------------------------
+  let playing = false, clock = 0, lastFrame = 0;
+  // A program without times plays four moves a second.
+  const timed = steps > 0 && path.elapsed[steps - 1] > 0;
+  const endTime = (move) => (timed ? path.elapsed[move] : (move + 1) / 4);
+  const setPlaying = (on) => {
+    playing = on && steps > 0;
+    byId("play").classList.toggle("playing", playing);
+    labelPlay();
+    if (!playing) { if (part > 0) goTo(step, 0); return; }
+    if (step >= steps) goTo(0);
+    clock = step > 0 ? endTime(step - 1) : 0;
+    lastFrame = performance.now();
+    requestAnimationFrame(frame);
+  };
+  const frame = (now) => {
+    if (!playing) return;
+    clock += (Math.max(0, now - lastFrame) / 1000) * Number(byId("speed").value);
+    lastFrame = now;
+    let next = step;
+    while (next < steps && endTime(next) <= clock) next++;
+    const started = next > 0 ? endTime(next - 1) : 0;
+    const share = next < steps && endTime(next) > started ? (clock - started) / (endTime(next) - started) : 0;
+    goTo(next, Math.max(0, Math.min(1, share)));
+    if (next >= steps) setPlaying(false);
+    else requestAnimationFrame(frame);
+  };
+  const stepBy = (by) => { setPlaying(false); goTo(step + by); };
+
+  // ---- tables ------------------------------------------------------------------------------------------
+  const lineButton = (text, from, to) => element("button", { type: "button", class: "link", onclick: () => { select(from, to); list.focus({ preventScroll: true }); document.querySelector("main").scrollIntoView({ block: "nearest" }); } }, text);
+  const makeOperations = () => {
+    const cell = (text, quantity) => element("td", quantity ? { class: "quantity" } : {}, text);
+    const head = [["", 0], ["tool", 0], ["operation", 0], ["code", 0], ["lines", 0], ["passes", 1], ["cutting-mm", 1], ["rapid-mm", 1], ["time", 1]];
+    const total = (field) => run.operations.reduce((sum, row) => sum + row[field], 0);
+    byId("operations").replaceChildren(
+      element("thead", {}, element("tr", {}, ...head.map(([key, quantity]) =>
+        element("th", { scope: "col", class: quantity ? "quantity" : undefined }, key ? word(key) : "")))),
+      element("tbody", {}, ...run.operations.map((row) => element("tr", {},
+        cell(String(row.index)), cell(row.tool === null ? "" : "T" + row.tool),
+        element("td", {}, lineButton(inLanguage(row.name), row.first, row.last)), cell(row.code),
+        cell(row.first === row.last ? String(row.first) : `${row.first}–${row.last}`), cell(row.passes > 0 ? String(row.passes) : "", 1),
+        cell(number(row.cutting_mm, 1), 1), cell(number(row.rapid_mm, 1), 1), cell(seconds(row.seconds), 1)))),
+      element("tfoot", {}, element("tr", {}, cell(""), cell(""), cell(word("total")), cell(""), cell(""), cell(""),
+        cell(number(total("cutting_mm"), 1), 1), cell(number(total("rapid_mm"), 1), 1), cell(seconds(total("seconds")), 1))));
+    byId("operations").closest("section").hidden = run.operations.length === 0;
+    byId("note").textContent = inLanguage(run.note);
+  };
+  const makeDiagnostics = () => {
+    const detail = (key, text) => (text ? [element("p", { class: "detail" }, word(key, { text }))] : []);
+    byId("diagnostics").replaceChildren(...(run.diagnostics.length === 0 ? [word("none-found")] : run.diagnostics.map((found) =>
+      element("div", { class: "found " + found.severity },
+        element("p", { class: "head" }, element("span", { class: found.severity }, `${SIGNS[found.severity]} ${word("severity-" + found.severity)} ${found.id} `),
+          ...(found.line > 0 ? [lineButton(word("line", { n: found.line }), found.line, found.line)] : [])),
+        element("p", {}, inLanguage(found.message)), ...detail("cause", inLanguage(found.cause)), ...detail("remedy", inLanguage(found.remedy))))));
+  };
+  const makeFacts = () => {
+    byId("facts").replaceChildren(...run.facts.map((fact) =>
+      element("tr", {}, element("th", { scope: "row" }, inLanguage(fact.label)), element("td", {}, fact.value))));
+    byId("facts").closest("section").hidden = run.facts.length === 0;
+  };
+  const makeLegend = () => {
+    const stroke = (look) => {
+      const span = element("span");
+      span.innerHTML = `<svg viewBox="0 0 34 8" aria-hidden="true"><line x1="1" y1="4" x2="33" y2="4" ${look}/></svg>`;
+      return span.firstChild;
+    };
+    const used = new Set(kind);
+    const entries = KINDS.filter((_, k) => used.has(k)).map((name) =>
+      [word("picture-" + name), `stroke="var(--${name})" stroke-width="${LOOK[name][0] + 0.4}" stroke-dasharray="${LOOK[name][1].join(" ")}"`]);
+    entries.push([word("picture-centre-line"), `stroke="var(--centre)" stroke-dasharray="14 4 2 4"`]);
+    byId("legend").replaceChildren(...entries.map(([text, look]) => element("li", {}, stroke(look), text)));
+  };
+  const KEYS = [["→ ←", "key-step"], ["Home End", "key-ends"], ["Space", "key-play"], ["↓ ↑", "key-line"], ["Enter", "key-enter"],
+    ["+ −", "key-zoom"], ["Shift+↑ ↓ ← →", "key-pan"], ["0 F", "key-fit"], ["L", "key-language"], ["Esc", "key-escape"], ["?", "key-help"]];
+  const makeKeys = () => byId("key-list").replaceChildren(...KEYS.flatMap(([keys, key]) => [
+    element("dt", {}, ...keys.split(" ").flatMap((one) => [element("kbd", {}, one), " "])), element("dd", {}, word(key))]));
+
+  // ---- language ----------------------------------------------------------------------------------------
+  const labelPlay = () => {
+    const text = word(playing ? "pause" : "play");
+    byId("play").setAttribute("aria-label", text);
+    byId("play").title = text;
+  };
+  const setLanguage = (to) => {
+    language = to;
+    document.documentElement.lang = to === "zh" ? "zh-CN" : "en";
+    document.querySelectorAll("[data-text]").forEach((one) => { one.textContent = word(one.dataset.text); });
+    document.querySelectorAll("[data-title]").forEach((one) => { one.title = word(one.dataset.title); });
+    document.querySelectorAll("[data-label]").forEach((one) => {
+      one.setAttribute("aria-label", word(one.dataset.label));
+      if (one.tagName === "BUTTON" || one.tagName === "SELECT") one.title = word(one.dataset.label);
+    });
+    labelPlay();
+    makeOperations();
+    makeDiagnostics();
+    makeFacts();
+    makeLegend();
+    makeKeys();
+    showRows(true);
+    readout();
+    redraw();
+  };
+  const toggleLanguage = () => setLanguage(language === "en" ? "zh" : "en");
+
+  // ---- hands -------------------------------------------------------------------------------------------
+  const keys = byId("keys");
+  const help = () => (keys.open ? keys.close() : keys.showModal());
+  for (const [id, act] of Object.entries({
+    first: () => { setPlaying(false); goTo(0); }, back: () => stepBy(-1), play: () => setPlaying(!playing), forward: () => stepBy(1),
+    last: () => { setPlaying(false); goTo(steps); }, "zoom-in": () => zoom(1.5), "zoom-out": () => zoom(1 / 1.5), fit, language: toggleLanguage, help,
+  })) byId(id).addEventListener("click", act);
+  byId("position").max = steps;
+  byId("position").addEventListener("input", (event) => { setPlaying(false); goTo(Number(event.target.value)); });
+  list.addEventListener("click", (event) => {
+    const row = event.target.closest(".row");
+    if (row) select(Number(row.dataset.line));
+  });
+  const goToSelection = () => { const [first] = movesOfSelection(); if (first !== undefined) { setPlaying(false); goTo(first + 1); } };
+  list.addEventListener("dblclick", goToSelection);
+  list.addEventListener("scroll", () => showRows(false));
+
+  let drag = null;
+  const at = (event) => { const r = picture.getBoundingClientRect(); return [event.clientX - r.left - picture.clientLeft, event.clientY - r.top - picture.clientTop]; };
+  const fingers = new Map();
+  picture.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    picture.setPointerCapture(event.pointerId);
+    fingers.set(event.pointerId, at(event));
+    drag = { from: at(event), last: at(event), moved: fingers.size > 1 };
+  });
+  picture.addEventListener("pointermove", (event) => {
+    const [px, py] = at(event);
+    if (fingers.size === 2 && fingers.has(event.pointerId)) {
+      const spread = () => { const [a, b] = [...fingers.values()]; return [Math.hypot(a[0] - b[0], a[1] - b[1]), (a[0] + b[0]) / 2, (a[1] + b[1]) / 2]; };
+      const [before, x0, y0] = spread();
+      fingers.set(event.pointerId, [px, py]);
+      const [after, x1, y1] = spread();
+      pan(x1 - x0, y1 - y0);
+      if (before > 0) zoom(after / before, x1, y1);
+      return;
+    }
+    if (drag && fingers.has(event.pointerId)) {
+      if (!drag.moved && Math.hypot(px - drag.from[0], py - drag.from[1]) > 4) { drag.moved = true; picture.classList.add("dragging"); }
+      if (drag.moved) pan(px - drag.last[0], py - drag.last[1]);
+      drag.last = [px, py];
+      fingers.set(event.pointerId, [px, py]);
+      return;
+    }
+    const near = findAt(px, py);
+    const place = `X⌀ ${number(2 * toX(py), 2)}  Z ${number(toZ(px), 2)}`;
+    byId("hover").textContent = near < 0 ? place : [place, ...describe(moveOf[near]).slice(1, -1)].join(" · ");
+    picture.style.cursor = near < 0 ? "" : "pointer";
+  });
+  const release = (event) => {
+    if (fingers.delete(event.pointerId) && drag && !drag.moved && event.type === "pointerup") {
+      const near = findAt(...at(event));
+      if (near >= 0) select(path.line[moveOf[near]], path.line[moveOf[near]], moveOf[near]);
+      else clearSelection();
+    }
+    if (fingers.size === 0) drag = null;
+    picture.classList.remove("dragging");
+  };
+  picture.addEventListener("pointerup", release);
+  picture.addEventListener("pointercancel", release);
+  picture.addEventListener("pointerleave", () => { byId("hover").textContent = ""; });
+  picture.addEventListener("dblclick", fit);
+  picture.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    const lines = event.deltaMode === 1 ? 16 : 1;
+    zoom(Math.exp(-Math.max(-300, Math.min(300, event.deltaY * lines)) * 0.0018), ...at(event));
+  }, { passive: false });
+
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey || keys.open) return;
+    const target = event.target, own = target.closest?.("input, select");
+    if (own) return;
+    const onButton = target.closest?.("button") && (event.key === " " || event.key === "Enter");
+    if (onButton) return;
+    const lines = run.program.length;
+    const acts = {
+      ArrowRight: () => stepBy(1), ArrowLeft: () => stepBy(-1),
+      Home: () => { setPlaying(false); goTo(0); }, End: () => { setPlaying(false); goTo(steps); },
+      ArrowDown: () => select(Math.min(lines, selectedTo + 1)), ArrowUp: () => select(Math.max(1, selectedFrom - 1)),
+      Enter: goToSelection, " ": () => setPlaying(!playing), "+": () => zoom(1.25), "=": () => zoom(1.25), "-": () => zoom(0.8),
+      0: fit, f: fit, l: toggleLanguage, "?": help, Escape: clearSelection,
+    };
+    const pans = { ArrowLeft: [60, 0], ArrowRight: [-60, 0], ArrowUp: [0, 60], ArrowDown: [0, -60] };
+    const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+    const act = event.shiftKey && pans[key] ? () => pan(...pans[key]) : acts[key];
+    if (!act) return;
+    event.preventDefault();
+    act();
+  });
+  keys.addEventListener("keydown", (event) => { if (event.key === "?") { event.preventDefault(); event.stopPropagation(); keys.close(); } });
+
+  const recolour = () => { readColours(); drawPath(); };
+  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", recolour);
+  window.addEventListener("beforeprint", () => { document.documentElement.classList.add("printing"); recolour(); });
+  window.addEventListener("afterprint", () => { document.documentElement.classList.remove("printing"); recolour(); });
+
+  // ---- begin -------------------------------------------------------------------------------------------
+  byId("incomplete").hidden = !path.incomplete;
+  readColours();
+  setLanguage(language);
+  new ResizeObserver(resize).observe(picture);
+  resize();
+
+  // For scripts and tests.
+  window.turnwright = {
+    get selectedLine() { return selectedFrom; },
+    get selectedMove() { return pickedMove; },
+    get step() { return step; },
+    get steps() { return steps; },
+    get playing() { return playing; },
+    get language() { return language; },
+    get view() { return { ...view }; },
+    get toolPosition() { const tool = toolPosition(); return tool && { diameter: 2 * tool[0], z: tool[1] }; },
+    highlightedSegments: () => [...lit],
+    // Where the middle of a segment is on the page.
+    placeOf: (i) => {
+      const [x, z] = along(i, 0.5), r = picture.getBoundingClientRect();
+      return { x: r.left + picture.clientLeft + toPxX(z), y: r.top + picture.clientTop + toPxY(x) };
+    },
+    lineOf: (i) => path.line[moveOf[i]],
+    selectLine: (line) => select(line), goTo, fit, setLanguage,
+  };
+})();

@@ -1,0 +1,7 @@
+//! One file a format. A new format is a new file here and nothing else.
+
+pub mod html;
+pub mod jsonl;
+#[cfg(feature = "png")]
+pub mod png;
+pub mod svg;

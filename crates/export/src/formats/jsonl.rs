@@ -1,0 +1,446 @@
+//! The trace: one JSON object a line, one line a command. The format is a promise to users' scripts.
+//!
+//! In: commands in order of execution. Out: bytes appended to a buffer that the caller empties.
+//! Lengths are millimetres, X values and arc centres in X are diameters. Fields stand in a fixed order and
+//! numbers carry no trailing zeros, so that equal runs give equal bytes. Writing a command allocates nothing
+//! but room in the buffer.
+
+use turnwright_canon::{Action, Command, Coolant, Dwell, Origin, Shape, SpindleSpeed, SpindleState, Turn};
+use turnwright_units::{Feed, LeastIncrement, Length, Position, WorkTip, write_fixed, write_millimetres};
+
+/// Decimal places of feeds, leads and seconds, which are finer than any least increment.
+const FINE_DECIMALS: u8 = 6;
+
+/// What the first line says.
+#[derive(Clone, Copy, Debug)]
+pub struct TraceHeader<'a> {
+    /// Name of the control that the program ran on.
+    pub control: &'a str,
+}
+
+/// The alarm that ended the run, in words already chosen.
+#[derive(Clone, Copy, Debug)]
+pub struct TraceAlarm<'a> {
+    /// The control's own number, as it prints it.
+    pub id: &'a str,
+    /// Name of the diagnostic.
+    pub key: &'a str,
+    /// The control's own words.
+    pub message: &'a str,
+    /// Line, from 1.
+    pub line: u32,
+    /// Sequence number of the block.
+    pub sequence: Option<u32>,
+    /// Program number.
+    pub program: Option<u32>,
+    /// Call depth, 0 in the main program.
+    pub depth: u8,
+}
+
+/// Writes the first line.
+pub fn write_header(out: &mut Vec<u8>, header: &TraceHeader<'_>) {
+    out.extend_from_slice(br#"{"turnwright":"trace","version":1,"control":"#);
+    write_json_string(out, header.control);
+    out.extend_from_slice(b",\"units\":\"mm\",\"x\":\"diameter\",\"frame\":\"work\"}\n");
+}
+
+/// Writes one command and its line end, its lengths rounded to `decimals` places.
+pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
+    match &command.action {
+        Action::Rapid { to, path: _ } => {
+            out.extend_from_slice(br#"{"op":"rapid""#);
+            write_end_point(out, *to, decimals);
+        }
+        Action::Feed { to, shape, feed } => write_feed(out, *to, shape, *feed, decimals),
+        Action::Thread { to, lead, lead_end, start_angle } => {
+            out.extend_from_slice(br#"{"op":"thread""#);
+            write_end_point(out, *to, decimals);
+            write_length(out, br#","lead":"#, lead.0, FINE_DECIMALS);
+            out.extend_from_slice(br#","q":"#);
+            write_fixed(out, start_angle.millidegrees(), 3);
+            if let Some(end) = lead_end {
+                write_length(out, br#","lead_end":"#, end.0, FINE_DECIMALS);
+            }
+        }
+        Action::Dwell(Dwell::Time(time)) => {
+            out.extend_from_slice(br#"{"op":"dwell","seconds":"#);
+            write_float(out, time.0);
+        }
+        Action::Dwell(Dwell::Turns(turns)) => {
+            out.extend_from_slice(br#"{"op":"dwell","revolutions":"#);
+            write_float(out, turns.0);
+        }
+        Action::Spindle { state, speed, rpm_max } => {
+            out.extend_from_slice(match state {
+                SpindleState::Clockwise => br#"{"op":"spindle","state":"cw""#.as_slice(),
+                SpindleState::CounterClockwise => br#"{"op":"spindle","state":"ccw""#,
+                SpindleState::Stop => br#"{"op":"spindle","state":"stop""#,
+            });
+            match speed {
+                SpindleSpeed::Constant(rpm) => write_number(out, br#","mode":"rpm","s":"#, rpm.0),
+                SpindleSpeed::Surface(speed) => {
+                    out.extend_from_slice(br#","mode":"css","s":"#);
+                    // Whole nanometres are ninth decimals of a metre.
+                    write_fixed(out, speed.0.nm(), 9);
+                }
+            }
+            if let Some(rpm) = rpm_max {
+                write_number(out, br#","max_rpm":"#, rpm.0);
+            }
+        }
+        Action::Tool { tool, offset } => {
+            write_number(out, br#"{"op":"tool","tool":"#, *tool);
+            write_number(out, br#","offset":"#, *offset);
+        }
+        Action::Coolant(Coolant::On) => out.extend_from_slice(br#"{"op":"coolant","on":true"#),
+        Action::Coolant(Coolant::Off) => out.extend_from_slice(br#"{"op":"coolant","on":false"#),
+        Action::Auxiliary { code } => write_number(out, br#"{"op":"m","code":"#, *code),
+        Action::Stop => out.extend_from_slice(br#"{"op":"stop""#),
+        Action::OptionalStop => out.extend_from_slice(br#"{"op":"optional-stop""#),
+        Action::End => out.extend_from_slice(br#"{"op":"end""#),
+        Action::Message(text) => {
+            out.extend_from_slice(br#"{"op":"message","text":"#);
+            write_json_string(out, text);
+        }
+    }
+    write_origin(out, &command.origin);
+}
+
+/// Writes the alarm that ended the run: the last line.
+pub fn write_alarm(out: &mut Vec<u8>, alarm: &TraceAlarm<'_>) {
+    out.extend_from_slice(br#"{"op":"alarm","id":"#);
+    write_json_string(out, alarm.id);
+    out.extend_from_slice(br#","key":"#);
+    write_json_string(out, alarm.key);
+    out.extend_from_slice(br#","message":"#);
+    write_json_string(out, alarm.message);
+    let origin = Origin {
+        sequence: alarm.sequence,
+        program: alarm.program,
+        depth: alarm.depth,
+        ..Origin::line(alarm.line)
+    };
+    write_origin(out, &origin);
+}
+
+fn write_feed(out: &mut Vec<u8>, to: Position<WorkTip>, shape: &Shape, feed: Feed, decimals: u8) {
+    out.extend_from_slice(br#"{"op":"feed""#);
+    write_end_point(out, to, decimals);
+    match shape {
+        Shape::Line => out.extend_from_slice(br#","shape":"line""#),
+        Shape::Arc { turn, centre } => {
+            out.extend_from_slice(match turn {
+                Turn::Clockwise => br#","shape":"cw""#.as_slice(),
+                Turn::CounterClockwise => br#","shape":"ccw""#,
+            });
+            write_length(out, br#","cx":"#, centre.x.to_diameter().0, decimals);
+            write_length(out, br#","cz":"#, centre.z, decimals);
+            write_length(out, br#","r":"#, distance(to, *centre), decimals);
+        }
+    }
+    write_length(out, br#","f":"#, feed.length(), FINE_DECIMALS);
+    out.extend_from_slice(match feed {
+        Feed::PerRevolution(_) => br#","fu":"mm/rev""#.as_slice(),
+        Feed::PerMinute(_) => br#","fu":"mm/min""#,
+    });
+}
+
+/// The fields that every command has, and the end of the line.
+fn write_origin(out: &mut Vec<u8>, origin: &Origin) {
+    write_number(out, br#","line":"#, origin.line);
+    if let Some(sequence) = origin.sequence {
+        write_number(out, br#","n":"#, sequence);
+    }
+    if let Some(program) = origin.program {
+        write_number(out, br#","o":"#, program);
+    }
+    write_number(out, br#","depth":"#, origin.depth.into());
+    if let Some(cycle) = &origin.cycle {
+        // The label as a person writes it: two digits at least, a tenth only when there is one.
+        out.extend_from_slice(br#","cycle":"G"#);
+        let (whole, tenth) = (cycle.label.0 / 10, cycle.label.0 % 10);
+        if whole < 10 {
+            out.push(b'0');
+        }
+        write_fixed(out, whole.into(), 0);
+        if tenth != 0 {
+            out.extend_from_slice(&[b'.', b'0' + tenth as u8]);
+        }
+        out.push(b'"');
+        if cycle.pass > 0 {
+            write_number(out, br#","pass":"#, cycle.pass);
+        }
+        out.extend_from_slice(br#","phase":""#);
+        out.extend_from_slice(cycle.phase.word().as_bytes());
+        out.push(b'"');
+    }
+    out.extend_from_slice(b"}\n");
+}
+
+fn write_end_point(out: &mut Vec<u8>, to: Position<WorkTip>, decimals: u8) {
+    write_length(out, br#","x":"#, to.x.to_diameter().0, decimals);
+    write_length(out, br#","z":"#, to.z, decimals);
+}
+
+/// Distance of two places, computed, so rounded to the finest increment; no distance fits when the centre is
+/// farther away than any machine is long.
+fn distance(a: Position<WorkTip>, b: Position<WorkTip>) -> Length {
+    let way = a - b;
+    let mm = way.x.to_mm().hypot(way.z.to_mm());
+    Length::from_mm_rounded(mm, LeastIncrement::METRIC_C).unwrap_or(Length::ZERO)
+}
+
+fn write_length(out: &mut Vec<u8>, name: &[u8], length: Length, decimals: u8) {
+    out.extend_from_slice(name);
+    write_millimetres(out, length, decimals);
+}
+
+fn write_number(out: &mut Vec<u8>, name: &[u8], number: u32) {
+    out.extend_from_slice(name);
+    write_fixed(out, number.into(), 0);
+}
+
+/// A time or a number of turns. What is no number is written as JSON's `null`.
+fn write_float(out: &mut Vec<u8>, number: f64) {
+    let millionths = (number * 1e6).round();
+    if millionths.is_finite() {
+        write_fixed(out, millionths as i64, FINE_DECIMALS);
+    } else {
+        out.extend_from_slice(b"null");
+    }
+}
+
+/// Writes any text as a JSON string with its quotation marks.
+fn write_json_string(out: &mut Vec<u8>, text: &str) {
+    const HEX: &[u8; 16] = b"0123456789abcdef";
+    out.push(b'"');
+    for &byte in text.as_bytes() {
+        match byte {
+            b'"' => out.extend_from_slice(b"\\\""),
+            b'\\' => out.extend_from_slice(b"\\\\"),
+            b'\n' => out.extend_from_slice(b"\\n"),
+            b'\r' => out.extend_from_slice(b"\\r"),
+            b'\t' => out.extend_from_slice(b"\\t"),
+            0..0x20 | 0x7f => {
+                out.extend_from_slice(b"\\u00");
+                out.extend_from_slice(&[HEX[usize::from(byte >> 4)], HEX[usize::from(byte & 15)]]);
+            }
+            _ => out.push(byte),
+        }
+    }
+    out.push(b'"');
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use turnwright_canon::{CycleLabel, CycleOrigin, Phase, RapidPath};
+    use turnwright_units::{
+        Angle, FeedPerMinute, FeedPerRevolution, Lead, Radius, Revolutions, Rpm, Seconds, SurfaceSpeed,
+    };
+
+    /// A place from whole micrometres of diameter and Z.
+    fn at(diameter_um: i64, z_um: i64) -> Position<WorkTip> {
+        Position::new(Radius(Length::from_nm(diameter_um * 500)), Length::from_nm(z_um * 1000))
+    }
+
+    fn line_of(action: Action, origin: Origin) -> String {
+        let mut out = Vec::new();
+        write_command(&mut out, &Command { action, origin }, 3);
+        String::from_utf8(out).expect("JSON is UTF-8")
+    }
+
+    fn at_line_seven(action: Action) -> String {
+        line_of(action, Origin::line(7))
+    }
+
+    #[test]
+    fn the_header_is_the_one_of_the_contract() {
+        let mut out = Vec::new();
+        write_header(&mut out, &TraceHeader { control: "some-control" });
+        assert_eq!(
+            String::from_utf8_lossy(&out),
+            "{\"turnwright\":\"trace\",\"version\":1,\"control\":\"some-control\",\"units\":\"mm\",\
+             \"x\":\"diameter\",\"frame\":\"work\"}\n"
+        );
+    }
+
+    #[test]
+    fn a_rapid_has_its_end_point_and_origin() {
+        let origin = Origin { sequence: Some(10), program: Some(1), ..Origin::line(4) };
+        assert_eq!(
+            line_of(Action::Rapid { to: at(46_000, 2_500), path: RapidPath::EachAxis }, origin),
+            "{\"op\":\"rapid\",\"x\":46,\"z\":2.5,\"line\":4,\"n\":10,\"o\":1,\"depth\":0}\n"
+        );
+    }
+
+    #[test]
+    fn feeds_have_shape_centre_radius_and_the_unit_of_the_feed() {
+        let feed = Feed::PerRevolution(FeedPerRevolution(Length::from_nm(300_000)));
+        assert_eq!(
+            at_line_seven(Action::Feed { to: at(-1_600, -15_000), shape: Shape::Line, feed }),
+            "{\"op\":\"feed\",\"x\":-1.6,\"z\":-15,\"shape\":\"line\",\"f\":0.3,\"fu\":\"mm/rev\",\"line\":7,\
+             \"depth\":0}\n"
+        );
+        // From d30 z-42 to d36 z-45 about d36 z-42: radius 3.
+        let feed = Feed::PerMinute(FeedPerMinute(Length::from_mm(120)));
+        let shape = Shape::Arc { turn: Turn::Clockwise, centre: at(36_000, -42_000) };
+        assert_eq!(
+            at_line_seven(Action::Feed { to: at(36_000, -45_000), shape, feed }),
+            "{\"op\":\"feed\",\"x\":36,\"z\":-45,\"shape\":\"cw\",\"cx\":36,\"cz\":-42,\"r\":3,\"f\":120,\
+             \"fu\":\"mm/min\",\"line\":7,\"depth\":0}\n"
+        );
+        let shape = Shape::Arc { turn: Turn::CounterClockwise, centre: at(30_000, -42_000) };
+        assert!(
+            at_line_seven(Action::Feed { to: at(36_000, -46_000), shape, feed })
+                .contains(r#""shape":"ccw","cx":30,"cz":-42,"r":5,"f":120"#)
+        );
+    }
+
+    #[test]
+    fn threads_have_lead_angle_and_the_last_lead_when_it_varies() {
+        let thread = |lead_end| Action::Thread {
+            to: at(27_400, -32_000),
+            lead: Lead(Length::from_nm(1_814_286)),
+            lead_end,
+            start_angle: Angle::from_millidegrees(180_500),
+        };
+        assert_eq!(
+            at_line_seven(thread(None)),
+            "{\"op\":\"thread\",\"x\":27.4,\"z\":-32,\"lead\":1.814286,\"q\":180.5,\"line\":7,\"depth\":0}\n"
+        );
+        assert!(
+            at_line_seven(thread(Some(Lead(Length::from_mm(2)))))
+                .contains(r#""lead":1.814286,"q":180.5,"lead_end":2,"line""#)
+        );
+    }
+
+    #[test]
+    fn everything_that_is_no_move() {
+        let cases = [
+            (Action::Dwell(Dwell::Time(Seconds(0.5))), r#"{"op":"dwell","seconds":0.5,"#),
+            (Action::Dwell(Dwell::Turns(Revolutions(2.0))), r#"{"op":"dwell","revolutions":2,"#),
+            (Action::Dwell(Dwell::Time(Seconds(f64::NAN))), r#"{"op":"dwell","seconds":null,"#),
+            (Action::Tool { tool: 1, offset: 11 }, r#"{"op":"tool","tool":1,"offset":11,"#),
+            (Action::Coolant(Coolant::On), r#"{"op":"coolant","on":true,"#),
+            (Action::Coolant(Coolant::Off), r#"{"op":"coolant","on":false,"#),
+            (Action::Auxiliary { code: 23 }, r#"{"op":"m","code":23,"#),
+            (Action::Stop, r#"{"op":"stop","#),
+            (Action::OptionalStop, r#"{"op":"optional-stop","#),
+            (Action::End, r#"{"op":"end","#),
+            (Action::Message("hi".into()), r#"{"op":"message","text":"hi","#),
+        ];
+        for (action, start) in cases {
+            assert_eq!(at_line_seven(action), format!("{start}\"line\":7,\"depth\":0}}\n"));
+        }
+    }
+
+    #[test]
+    fn the_spindle_says_how_its_speed_is_held() {
+        let spindle = |state, speed, rpm_max| at_line_seven(Action::Spindle { state, speed, rpm_max });
+        assert_eq!(
+            spindle(SpindleState::Clockwise, SpindleSpeed::Constant(Rpm(800)), None),
+            "{\"op\":\"spindle\",\"state\":\"cw\",\"mode\":\"rpm\",\"s\":800,\"line\":7,\"depth\":0}\n"
+        );
+        let surface = SpindleSpeed::Surface(SurfaceSpeed::from_m_per_min(180));
+        assert_eq!(
+            spindle(SpindleState::CounterClockwise, surface, Some(Rpm(2500))),
+            "{\"op\":\"spindle\",\"state\":\"ccw\",\"mode\":\"css\",\"s\":180,\"max_rpm\":2500,\"line\":7,\
+             \"depth\":0}\n"
+        );
+        let surface = SpindleSpeed::Surface(SurfaceSpeed::from_ft_per_min(500));
+        assert!(
+            spindle(SpindleState::Stop, surface, None)
+                .starts_with(r#"{"op":"spindle","state":"stop","mode":"css","s":152.4,"line""#)
+        );
+    }
+
+    #[test]
+    fn a_cycle_adds_label_pass_and_phase() {
+        let cycle = |label, pass, phase| Origin {
+            depth: 2,
+            cycle: Some(CycleOrigin { label: CycleLabel(label), pass, phase }),
+            ..Origin::line(9)
+        };
+        assert_eq!(
+            line_of(Action::Stop, cycle(710, 3, Phase::Cut)),
+            "{\"op\":\"stop\",\"line\":9,\"depth\":2,\"cycle\":\"G71\",\"pass\":3,\"phase\":\"cut\"}\n"
+        );
+        assert_eq!(
+            line_of(Action::Stop, cycle(711, 0, Phase::Approach)),
+            "{\"op\":\"stop\",\"line\":9,\"depth\":2,\"cycle\":\"G71.1\",\"phase\":\"approach\"}\n"
+        );
+        assert!(line_of(Action::Stop, cycle(40, 1, Phase::Home)).contains(r#""cycle":"G04","#));
+    }
+
+    #[test]
+    fn the_alarm_is_a_line_like_the_others() {
+        let mut out = Vec::new();
+        let alarm = TraceAlarm {
+            id: "062",
+            key: "cut-depth-illegal",
+            message: "ILLEGAL \"U\"",
+            line: 4,
+            sequence: Some(20),
+            program: Some(1),
+            depth: 0,
+        };
+        write_alarm(&mut out, &alarm);
+        assert_eq!(
+            String::from_utf8_lossy(&out),
+            "{\"op\":\"alarm\",\"id\":\"062\",\"key\":\"cut-depth-illegal\",\"message\":\"ILLEGAL \\\"U\\\"\",\
+             \"line\":4,\"n\":20,\"o\":1,\"depth\":0}\n"
+        );
+    }
+
+    #[test]
+    fn any_text_survives_as_json() {
+        for text in ["\u{0}\u{1}\u{1f}\u{7f}", "a\"b\\c/d\r\n\t", "车刀 ⌀40 \u{fffd}", "</script>\u{2028}"]
+        {
+            let line = at_line_seven(Action::Message(text.into()));
+            let value: serde_json::Value = serde_json::from_str(&line).expect("JSON");
+            assert_eq!(value["text"], text);
+        }
+    }
+
+    #[test]
+    fn lengths_are_rounded_to_the_increment() {
+        let mut out = Vec::new();
+        let to = Position::<WorkTip>::new(Radius(Length::from_nm(13_620_710)), Length::from_nm(-2_540));
+        let action = Action::Rapid { to, path: RapidPath::Straight };
+        write_command(&mut out, &Command { action, origin: Origin::line(1) }, 3);
+        assert!(out.starts_with(br#"{"op":"rapid","x":27.241,"z":-0.003,"#));
+        // Both rounded to a hundredth, as the coarsest increment asks for; never "-0".
+        out.clear();
+        let to = Position::<WorkTip>::new(Radius::ZERO, Length::from_nm(-LeastIncrement::METRIC_C.nm()));
+        let action = Action::Rapid { to, path: RapidPath::Straight };
+        write_command(&mut out, &Command { action, origin: Origin::line(1) }, 2);
+        assert!(out.starts_with(br#"{"op":"rapid","x":0,"z":0,"#));
+    }
+
+    /// `cargo test --release -p turnwright-export -- --ignored --nocapture speed`
+    #[test]
+    #[ignore = "a measurement"]
+    #[allow(clippy::disallowed_methods, clippy::disallowed_macros)]
+    fn speed_of_the_writer() {
+        let feed = Feed::PerRevolution(FeedPerRevolution(Length::from_nm(250_000)));
+        let cycle = Some(CycleOrigin { label: CycleLabel(710), pass: 12, phase: Phase::Cut });
+        let origin = Origin { sequence: Some(120), program: Some(1), cycle, ..Origin::line(345) };
+        let commands: Vec<Command> = (0..10_000i64)
+            .map(|i| Command {
+                action: Action::Feed { to: at(40_000 + i * 7, -i * 13), shape: Shape::Line, feed },
+                origin,
+            })
+            .collect();
+        let mut out = Vec::with_capacity(4 << 20);
+        let start = std::time::Instant::now();
+        for _ in 0..500 {
+            out.clear();
+            for command in &commands {
+                write_command(&mut out, command, 3);
+            }
+        }
+        let per_s = 5e6 / start.elapsed().as_secs_f64();
+        eprintln!("{:.1} million moves a second, {} bytes a move", per_s / 1e6, out.len() / 10_000);
+    }
+}

@@ -1,0 +1,461 @@
+//! One block: which functions it names, and the order in which its parts act.
+//!
+//! Order: modal codes, feed, speed, tool, auxiliary functions, then the move or one-shot function, then
+//! the auxiliary functions that wait for the end of the move. Source: execution order inside a block, both
+//! families.
+
+use turnwright_diagnostics::{Diagnostic, Severity};
+use turnwright_syntax::{Block, Fault, FaultKind, Word, scan_block};
+
+use crate::Environment;
+use crate::auxiliary::Auxiliary;
+use crate::functions::{Function, FunctionId, Kind};
+use crate::machine::{BlockPlace, Core};
+use crate::report::Alarm;
+use crate::words::Role;
+
+/// What a function's code may look at.
+pub(crate) struct Call<'a> {
+    pub(crate) block: &'a Block,
+    pub(crate) environment: &'a mut dyn Environment,
+    /// The code as written, times ten.
+    pub(crate) code: u16,
+    /// The code's word; `None` when the code is in force from an earlier block.
+    pub(crate) word: Option<Word>,
+}
+
+/// Letters that every block may have.
+const ALWAYS: u32 = Block::bit(b'G')
+    | Block::bit(b'N')
+    | Block::bit(b'O')
+    | Block::bit(b'M')
+    | Block::bit(b'S')
+    | Block::bit(b'T')
+    | Block::bit(b'F');
+
+const AXES: u32 = Block::bit(b'X') | Block::bit(b'Z') | Block::bit(b'U') | Block::bit(b'W');
+
+/// Most G words in a block.
+const CODES_MAX: usize = 16;
+
+/// The codes of a block, sorted by what they do.
+#[derive(Default)]
+struct Codes {
+    modes: [Option<(FunctionId, Word)>; CODES_MAX],
+    mode_count: usize,
+    one_shot: Option<(FunctionId, u16, Word)>,
+    motion: Option<(FunctionId, u16, Word)>,
+}
+
+/// What reading the next block gave.
+enum Read {
+    /// A block to be executed.
+    Block,
+    /// Nothing to execute on this line.
+    Blank,
+    /// The end of the record or of the text.
+    End,
+}
+
+impl Core {
+    /// Reads and executes one block.
+    #[inline]
+    pub(crate) fn run_block(
+        &mut self,
+        block: &mut Block,
+        environment: &mut dyn Environment,
+    ) -> Result<(), Alarm> {
+        match self.read_block(block, environment)? {
+            Read::Blank => Ok(()),
+            Read::End => self.end_of_record(block.is_percent),
+            Read::Block => {
+                self.count_block()?;
+                self.execute(block, environment)?;
+                if self.frames.is_empty() { Ok(()) } else { self.after_block(environment) }
+            }
+        }
+    }
+
+    fn count_block(&mut self) -> Result<(), Alarm> {
+        self.blocks_run += 1;
+        if self.blocks_run <= self.options.blocks_max {
+            return Ok(());
+        }
+        let limit = self.options.blocks_max as i64;
+        let diagnostic = Diagnostic::error("block-limit-reached").at(self.block_place()).with("limit", limit);
+        Err(self.finish(diagnostic))
+    }
+
+    /// Reads the next block that has something to execute into `block`.
+    #[inline]
+    fn read_block(&mut self, block: &mut Block, environment: &mut dyn Environment) -> Result<Read, Alarm> {
+        if self.from == 0 {
+            match self.text.next(environment) {
+                Ok(Some(line)) => self.line = line,
+                Ok(None) => {
+                    block.clear();
+                    return Ok(Read::End);
+                }
+                Err(_) => return Err(Box::new(Diagnostic::error("file-unreadable"))),
+            }
+        }
+        let bytes = self.text.bytes(&self.line);
+        let length = bytes.len();
+        let next = scan_block(bytes, self.from, block);
+        let last_byte = block.words.last().map_or(length as u32, |word| word.end);
+        let first_byte = block.words.first().map_or(self.from as u32, |word| word.start);
+        self.from = if next < length { next } else { 0 };
+        self.at = BlockPlace {
+            source: self.at.source,
+            line: self.line.number,
+            line_offset: self.line.offset,
+            first_byte,
+            last_byte,
+            sequence: None,
+        };
+        if self.line.is_cut {
+            let limit = crate::LINE_BYTES_MAX as i64;
+            let place = self.at.span(0, limit as u32);
+            return Err(Box::new(Diagnostic::error("line-too-long").at(place).with("limit", limit)));
+        }
+        if block.is_percent || block.is_end_of_text {
+            // Before the first block this is the leader of the tape.
+            return Ok(if self.has_started || block.is_end_of_text { Read::End } else { Read::Blank });
+        }
+        if block.skip.whole | block.skip.rest != 0 {
+            self.apply_skips(block, environment);
+        }
+        if !block.faults.is_empty() {
+            self.report_faults(block)?;
+        }
+        if let Some((start, end)) = block.macro_statement {
+            return Err(self.refuse_macro(start, end));
+        }
+        Ok(if block.words.is_empty() { Read::Blank } else { Read::Block })
+    }
+
+    #[cold]
+    fn apply_skips(&self, block: &mut Block, environment: &mut dyn Environment) {
+        let is_on =
+            |marks: u16| (1..=9u8).any(|switch| marks & (1 << switch) != 0 && environment.skips(switch));
+        if is_on(block.skip.whole) {
+            block.clear();
+        } else if is_on(block.skip.rest) {
+            let kept = usize::from(block.skip.words_kept);
+            let from = block.words.get(kept).map_or(u32::MAX, |word| word.start);
+            block.faults.retain(|fault| fault.start < from);
+            block.truncate(kept);
+        }
+    }
+
+    #[cold]
+    fn report_faults(&mut self, block: &Block) -> Result<(), Alarm> {
+        for fault in &block.faults {
+            let (key, severity) = fault_key(fault.kind);
+            if severity == Severity::Alarm {
+                return Err(self.fault_alarm(key, fault));
+            }
+            if !self.already_said(key, self.at.line) {
+                let place = self.at.span(fault.start, fault.end);
+                let quote = self.quote(fault.start, fault.end);
+                self.say(Diagnostic::new(severity, key).at(place).with("word", quote));
+            }
+        }
+        Ok(())
+    }
+
+    fn fault_alarm(&self, key: &'static str, fault: &Fault) -> Alarm {
+        let quote = self.quote(fault.start, fault.end);
+        self.finish(Diagnostic::alarm(key).at(self.at.span(fault.start, fault.end)).with("word", quote))
+    }
+
+    #[cold]
+    fn refuse_macro(&self, start: u32, end: u32) -> Alarm {
+        let bytes = self.text.bytes(&self.line);
+        if let Err(fault) = turnwright_syntax::parse_statement(bytes, start..end) {
+            let quote = self.quote(start, end);
+            let diagnostic =
+                Diagnostic::alarm("macro-syntax").at(self.at.span(fault.place.start, fault.place.end));
+            return self.finish(diagnostic.with("word", quote).with("expected", fault.expected));
+        }
+        let quote = self.quote(start, end);
+        let diagnostic = Diagnostic::error("macro-not-supported-yet").at(self.at.span(start, end));
+        self.finish(diagnostic.with("word", quote))
+    }
+
+    /// Executes the words of a block.
+    #[inline]
+    pub(crate) fn execute(&mut self, block: &Block, environment: &mut dyn Environment) -> Result<(), Alarm> {
+        self.has_started = true;
+        let mut codes = Codes::default();
+        let mut auxiliary = Auxiliary::default();
+        for word in &block.words {
+            match word.address {
+                _ if word.comma => {}
+                b'G' => self.sort_code(word, &mut codes)?,
+                b'M' => self.sort_auxiliary(word, &mut auxiliary)?,
+                b'N' => self.sequence_number(word)?,
+                b'O' => self.program_number(word, &auxiliary)?,
+                _ => {}
+            }
+        }
+        self.expects_program_number = false;
+        if self.is_over {
+            return Ok(());
+        }
+        for (id, word) in codes.modes.iter().take(codes.mode_count).flatten() {
+            self.run_mode(*id, word, block, environment)?;
+        }
+        if let Some((id, code, _)) = codes.motion {
+            self.change_motion(id, code);
+        }
+        let motion = self.modal.motion;
+        let function = codes.one_shot.map_or(motion, |(id, ..)| id).get();
+        self.check_letters(block, function, &auxiliary)?;
+        if let Some(word) = block.word(b'F') {
+            let per_revolution =
+                function.takes_lead || self.modal.feed_mode == crate::modal::FeedMode::PerRevolution;
+            let feed = self.feed(word, per_revolution)?;
+            if function.takes_lead {
+                self.check_lead(word);
+            }
+            self.modal.feed = Some(feed);
+        }
+        if block.present() & SPEED_OR_TOOL != 0 || self.spindle_may_change(&codes, &auxiliary) {
+            self.speed_and_tool(block, &codes, &auxiliary)?;
+        }
+        auxiliary.emit_before(self);
+        let waiting_corner = self.corner.is_some();
+        let call = |word, code, environment| Call { block, environment, code, word };
+        match codes.one_shot {
+            Some((id, code, word)) => {
+                if waiting_corner && block.present() & AXES != 0 && !function.in_figure {
+                    return Err(self.corner_without_next());
+                }
+                id.get().run(self, &mut call(Some(word), code, environment))?;
+                if !function.keeps_single_cycle {
+                    self.forget_single_cycle();
+                }
+            }
+            None => {
+                let triggered = block.present() & function.trigger != 0
+                    || (function.repeats && self.repeats_single_cycle(block, &auxiliary));
+                if triggered {
+                    if waiting_corner && motion != FunctionId::LINEAR {
+                        return Err(self.corner_without_next());
+                    }
+                    let word = codes.motion.map(|(_, _, word)| word);
+                    function.run(self, &mut call(word, self.modal.motion_code, environment))?;
+                }
+            }
+        }
+        if waiting_corner && self.corner.as_mut().is_some_and(crate::corner::PendingCorner::waits_too_long) {
+            return Err(self.corner_without_next());
+        }
+        if auxiliary.has_flow() { self.flow(&auxiliary, block, environment) } else { Ok(()) }
+    }
+
+    #[inline]
+    fn sort_code(&mut self, word: &Word, codes: &mut Codes) -> Result<(), Alarm> {
+        let code = self.code(word)?;
+        let Some(id) = self.dispatch.function(code) else { return Err(self.refuse_code(code, word)) };
+        let function = id.get();
+        if !function.in_figure && self.is_in_figure() {
+            return Err(self.refuse_in_figure(word));
+        }
+        match function.kind {
+            Kind::Mode(_) => {
+                if codes.mode_count == CODES_MAX {
+                    return Err(self.alarm("too-many-words", word));
+                }
+                codes.modes[codes.mode_count] = Some((id, *word));
+                codes.mode_count += 1;
+            }
+            Kind::OneShot(_) => {
+                if let Some((_, _, first)) = codes.one_shot {
+                    self.same_group(&first, word)?;
+                }
+                codes.one_shot = Some((id, code, *word));
+            }
+            Kind::Motion(_) => {
+                if let Some((_, _, first)) = codes.motion {
+                    self.same_group(&first, word)?;
+                }
+                codes.motion = Some((id, code, *word));
+            }
+        }
+        Ok(())
+    }
+
+    /// Two codes of one group: the last counts, unless the parameter makes it an alarm.
+    #[cold]
+    fn same_group(&mut self, first: &Word, word: &Word) -> Result<(), Alarm> {
+        if self.settings.duplicate_word_alarm {
+            return Err(self.alarm("duplicate-word", word));
+        }
+        self.warn("same-group-codes", first);
+        Ok(())
+    }
+
+    #[cold]
+    fn refuse_code(&self, code: u16, word: &Word) -> Alarm {
+        let functions = turnwright_control::Functions::load();
+        let quote = self.quote(word.start, word.end);
+        match functions.by_code(code, self.dispatch.system, self.control.name) {
+            Some((_, entry)) => {
+                let name = entry.name(turnwright_control::Language::English).to_string();
+                let diagnostic = Diagnostic::error("not-supported-yet").at(self.place(word));
+                self.finish(diagnostic.with("code", quote.clone()).with("word", quote).with("name", name))
+            }
+            None => {
+                let diagnostic = Diagnostic::alarm("unusable-g-code").at(self.place(word));
+                self.finish(diagnostic.with("code", quote.clone()).with("word", quote))
+            }
+        }
+    }
+
+    fn run_mode(
+        &mut self,
+        id: FunctionId,
+        word: &Word,
+        block: &Block,
+        environment: &mut dyn Environment,
+    ) -> Result<(), Alarm> {
+        id.get().run(self, &mut Call { block, environment, code: 0, word: Some(*word) })
+    }
+
+    fn change_motion(&mut self, id: FunctionId, code: u16) {
+        if self.modal.motion != id {
+            self.modal.motion = id;
+            self.forget_single_cycle();
+        }
+        self.modal.motion_code = code;
+    }
+
+    /// Every letter must belong to something in the block.
+    #[inline]
+    fn check_letters(
+        &mut self,
+        block: &Block,
+        function: &Function,
+        auxiliary: &Auxiliary,
+    ) -> Result<(), Alarm> {
+        let allowed = ALWAYS | AXES | function.letters | auxiliary.letters();
+        let foreign = block.present() & !allowed;
+        if foreign == 0 { Ok(()) } else { Err(self.foreign_letter(block, foreign, function)) }
+    }
+
+    #[cold]
+    fn foreign_letter(&self, block: &Block, foreign: u32, function: &Function) -> Alarm {
+        let word = block.words.iter().find(|word| !word.comma && foreign & Block::bit(word.address) != 0);
+        let key = if function.is_multiple_cycle { "cycle-word-illegal" } else { "illegal-address" };
+        self.alarm_at(key, word)
+    }
+
+    fn spindle_may_change(&self, codes: &Codes, auxiliary: &Auxiliary) -> bool {
+        auxiliary.spindle.is_some() || codes.mode_count > 0
+    }
+
+    #[cold]
+    fn speed_and_tool(&mut self, block: &Block, codes: &Codes, auxiliary: &Auxiliary) -> Result<(), Alarm> {
+        if self.is_capturing() {
+            return Ok(());
+        }
+        let limits_speed = codes.one_shot.is_some_and(|(id, ..)| id.get().takes_speed_limit);
+        if let Some(word) = block.word(b'S')
+            && !limits_speed
+        {
+            self.speed_word(word)?;
+        }
+        if let Some(word) = block.word(b'T') {
+            self.tool_word(word)?;
+        }
+        if let Some(state) = auxiliary.spindle {
+            self.modal.spindle = state;
+        }
+        self.emit_spindle();
+        Ok(())
+    }
+
+    #[inline]
+    fn sequence_number(&mut self, word: &Word) -> Result<(), Alarm> {
+        // Sequence numbers with leading zeros are common; only their value counts.
+        let number = self.number(word)?;
+        if number.has_point {
+            return Err(self.alarm("point-not-allowed", word));
+        }
+        match u32::try_from(number.digits) {
+            Ok(value) if value < 100_000 => self.at.sequence = Some(value),
+            _ => return Err(self.alarm("number-too-long", word)),
+        }
+        Ok(())
+    }
+
+    fn program_number(&mut self, word: &Word, auxiliary: &Auxiliary) -> Result<(), Alarm> {
+        if matches!(word.value, turnwright_syntax::Value::Missing) {
+            // `O<NAME>`: the name is kept by the reader.
+            return Ok(());
+        }
+        let number = self.whole(word, 99_999_999)?;
+        if auxiliary.returns {
+            return Ok(());
+        }
+        if !self.expects_program_number {
+            // The next program begins here: the one before had no end.
+            return self.end_of_record(false);
+        }
+        if number == 0
+            && self.control.policies.decimal_rule == turnwright_control::policy::DecimalRule::ByParameter
+        {
+            return Err(self.alarm("program-number-illegal", word));
+        }
+        self.program = Some(number);
+        Ok(())
+    }
+
+    /// Whether a single cycle in force runs again in a block without axis words.
+    fn repeats_single_cycle(&mut self, block: &Block, auxiliary: &Auxiliary) -> bool {
+        use turnwright_control::policy::SingleCycleRepeat;
+        let acts = auxiliary.is_plain() || block.present() & SPEED_OR_TOOL != 0;
+        let repeats = self.control.policies.single_cycle_repeat == SingleCycleRepeat::OnEveryBlock
+            && acts
+            && !auxiliary.has_flow()
+            && (self.modal.cycle.x.is_some() || self.modal.cycle.z.is_some());
+        if repeats {
+            self.warn_block("cycle-still-active");
+        }
+        repeats
+    }
+
+    /// The length words of an X-like letter by role, for functions.
+    pub(crate) fn optional_radius(
+        &self,
+        block: &Block,
+        letter: u8,
+        role: Role,
+    ) -> Result<Option<turnwright_units::Radius>, Alarm> {
+        block.word(letter).map(|word| self.radius(word, role)).transpose()
+    }
+}
+
+const SPEED_OR_TOOL: u32 = Block::bit(b'S') | Block::bit(b'T');
+
+/// The diagnostic of a fault that the reader found.
+fn fault_key(kind: FaultKind) -> (&'static str, Severity) {
+    use Severity::{Alarm, Warning};
+    match kind {
+        FaultKind::NumberTooLong => ("number-too-long", Alarm),
+        FaultKind::TwoPoints => ("point-not-allowed", Alarm),
+        FaultKind::TwoSigns => ("minus-not-allowed", Alarm),
+        FaultKind::AddressWithoutValue => ("address-without-value", Alarm),
+        FaultKind::NotAWord => ("not-a-word", Alarm),
+        FaultKind::DecimalComma => ("decimal-comma", Alarm),
+        FaultKind::LetterO => ("letter-o-for-zero", Alarm),
+        FaultKind::StrayBracket => ("stray-bracket", Alarm),
+        FaultKind::TooManyWords => ("too-many-words", Alarm),
+        FaultKind::UnclosedComment => ("unclosed-comment", Warning),
+        FaultKind::NestedComment => ("nested-comment", Warning),
+        FaultKind::TextAfterSemicolon => ("text-after-semicolon", Warning),
+        FaultKind::FullWidth => ("full-width-character", Warning),
+    }
+}

@@ -1,0 +1,56 @@
+//! `finishing` — once along the figure (G70; G72 in system C).
+//!
+//! `G70 P(ns) Q(nf)` executes the blocks from ns to nf as they stand: their F, S and T act, rapids stay rapid.
+//! Then both axes go back to the start point at rapid, each at its own rate, and the program goes on behind the
+//! cycle block.
+//!
+//! P and Q that are not those of a roughing cycle before are legal and the commonest typing error: a warning.
+//!
+//! Source: finishing cycle of both families.
+
+use turnwright_diagnostics::Diagnostic;
+
+use super::Function;
+use crate::block::Call;
+use crate::machine::Core;
+use crate::report::Alarm;
+
+pub(super) static FINISHING: Function =
+    Function::one_shot("finishing", finishing).with_letters(b"PQ").multiple_cycle();
+
+fn finishing(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
+    core.refuse_axis_words(call)?;
+    let range = core.range_words(call)?;
+    core.compare_with_roughing(&range);
+    let (first, _) = core.find_range(&range, call)?;
+    core.start_finish(first, range, call.code, call.environment)
+}
+
+impl Core {
+    /// X, Z, U and W have no meaning in the finishing cycle.
+    fn refuse_axis_words(&self, call: &Call<'_>) -> Result<(), Alarm> {
+        match b"XZUW".iter().find_map(|letter| call.block.word(*letter)) {
+            Some(word) => Err(self.alarm("cycle-word-illegal", word)),
+            None => Ok(()),
+        }
+    }
+
+    fn compare_with_roughing(&mut self, range: &crate::figure::FigureRange) {
+        if self.roughed.is_empty() || self.roughed.contains(&(range.first, range.last)) {
+            return;
+        }
+        // The word that differs from a roughing cycle's, when only one does.
+        let same_first = self.roughed.iter().rev().find(|(first, _)| *first == range.first);
+        let same_last = self.roughed.iter().rev().find(|(_, last)| *last == range.last);
+        let (place, word, expected) = match (same_first, same_last) {
+            (Some((_, last)), _) => (range.last_place, format!("Q{}", range.last), format!("Q{last}")),
+            (None, Some((first, _))) => (range.first_place, format!("P{}", range.first), format!("P{first}")),
+            (None, None) => {
+                let (first, last) = self.roughed[self.roughed.len() - 1];
+                (range.first_place, format!("P{} Q{}", range.first, range.last), format!("P{first} Q{last}"))
+            }
+        };
+        let diagnostic = Diagnostic::warning("finishing-range-differs").at(place);
+        self.say(diagnostic.with("word", word).with("expected", expected));
+    }
+}

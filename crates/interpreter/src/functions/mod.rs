@@ -1,0 +1,264 @@
+//! The functions that codes name, one file each.
+//!
+//! A file holds the manual entry (its head comment), the specification (words, place in figures, effect on
+//! modal state) and the code. Numbers, groups and texts stand in `data/functions.toml` under the same name, so
+//! that the same function can be `G71` here and `G73` there, and codes that are not executed yet are known by
+//! name. `linear.rs` is the model file.
+
+mod arc;
+mod coordinate_setting;
+mod dwell;
+mod finishing;
+mod groove;
+mod linear;
+mod modes;
+mod multi_thread;
+mod pattern;
+mod rapid;
+mod reference_return;
+mod rough;
+mod single_cycles;
+mod thread;
+
+use turnwright_control::{CodeSystem, Control, Functions, parse_code};
+use turnwright_syntax::Block;
+
+use crate::block::Call;
+use crate::machine::Core;
+use crate::report::Alarm;
+
+/// What a function does when its block runs.
+type Run = fn(&mut Core, &mut Call<'_>) -> Result<(), Alarm>;
+
+/// When a function acts.
+#[derive(Clone, Copy)]
+pub(crate) enum Kind {
+    /// Changes a mode before anything else in the block.
+    Mode(Run),
+    /// Moves the tool; stays in force.
+    Motion(Run),
+    /// Acts once.
+    OneShot(Run),
+}
+
+/// A function: what the block may hold and what happens.
+pub(crate) struct Function {
+    /// Its entry in `data/functions.toml`.
+    pub(crate) name: &'static str,
+    pub(crate) kind: Kind,
+    /// Letters it takes besides X, Z, U, W and those of every block.
+    pub(crate) letters: u32,
+    /// Letters that make a motion run when its code is in force from an earlier block.
+    pub(crate) trigger: u32,
+    /// May stand in the figure of a cycle.
+    pub(crate) in_figure: bool,
+    /// Its F is a lead.
+    pub(crate) takes_lead: bool,
+    /// Its S is a speed limit.
+    pub(crate) takes_speed_limit: bool,
+    /// Runs again in blocks without axis words on some controls.
+    pub(crate) repeats: bool,
+    /// Leaves the end point of a single cycle in force.
+    pub(crate) keeps_single_cycle: bool,
+    /// One of the multiple repetitive cycles: a foreign letter has an alarm of its own.
+    pub(crate) is_multiple_cycle: bool,
+}
+
+/// The bits of some letters.
+pub(crate) const fn letters(text: &[u8]) -> u32 {
+    let mut bits = 0;
+    let mut at = 0;
+    while at < text.len() {
+        bits |= Block::bit(text[at]);
+        at += 1;
+    }
+    bits
+}
+
+const AXES: u32 = letters(b"XZUW");
+
+impl Function {
+    const fn new(name: &'static str, kind: Kind) -> Self {
+        Self {
+            name,
+            kind,
+            letters: 0,
+            trigger: 0,
+            in_figure: false,
+            takes_lead: false,
+            takes_speed_limit: false,
+            repeats: false,
+            keeps_single_cycle: false,
+            is_multiple_cycle: false,
+        }
+    }
+
+    /// A mode.
+    pub(crate) const fn mode(name: &'static str, run: Run) -> Self {
+        Self::new(name, Kind::Mode(run))
+    }
+
+    /// A motion, run by axis words.
+    pub(crate) const fn motion(name: &'static str, run: Run) -> Self {
+        let mut function = Self::new(name, Kind::Motion(run));
+        function.trigger = AXES;
+        function
+    }
+
+    /// A one-shot function.
+    pub(crate) const fn one_shot(name: &'static str, run: Run) -> Self {
+        Self::new(name, Kind::OneShot(run))
+    }
+
+    pub(crate) const fn with_letters(mut self, text: &[u8]) -> Self {
+        self.letters = letters(text);
+        self
+    }
+
+    pub(crate) const fn triggered_by(mut self, text: &[u8]) -> Self {
+        self.trigger |= letters(text);
+        self
+    }
+
+    pub(crate) const fn allowed_in_figure(mut self) -> Self {
+        self.in_figure = true;
+        self
+    }
+
+    pub(crate) const fn with_lead(mut self) -> Self {
+        self.takes_lead = true;
+        self
+    }
+
+    pub(crate) const fn with_speed_limit(mut self) -> Self {
+        self.takes_speed_limit = true;
+        self
+    }
+
+    pub(crate) const fn repeating(mut self) -> Self {
+        self.repeats = true;
+        self
+    }
+
+    pub(crate) const fn keeping_single_cycle(mut self) -> Self {
+        self.keeps_single_cycle = true;
+        self
+    }
+
+    pub(crate) const fn multiple_cycle(mut self) -> Self {
+        self.is_multiple_cycle = true;
+        self
+    }
+
+    #[inline]
+    pub(crate) fn run(&self, core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
+        let (Kind::Mode(run) | Kind::Motion(run) | Kind::OneShot(run)) = self.kind;
+        run(core, call)
+    }
+}
+
+/// All functions; a new file adds its line here.
+static ALL: &[&Function] = &[
+    &rapid::RAPID,
+    &linear::LINEAR,
+    &arc::ARC_CLOCKWISE,
+    &arc::ARC_COUNTER_CLOCKWISE,
+    &thread::THREAD,
+    &dwell::DWELL,
+    &modes::INCH,
+    &modes::METRIC,
+    &modes::NOSE_COMPENSATION_OFF,
+    &modes::WORK_COORDINATES_1,
+    &modes::WORK_COORDINATES_2,
+    &modes::WORK_COORDINATES_3,
+    &modes::WORK_COORDINATES_4,
+    &modes::WORK_COORDINATES_5,
+    &modes::WORK_COORDINATES_6,
+    &modes::CONSTANT_SURFACE_SPEED,
+    &modes::CONSTANT_SPINDLE_SPEED,
+    &modes::FEED_PER_MINUTE,
+    &modes::FEED_PER_REVOLUTION,
+    &modes::ABSOLUTE,
+    &modes::INCREMENTAL,
+    &modes::PLANE_ZX,
+    &coordinate_setting::COORDINATE_SETTING,
+    &reference_return::REFERENCE_RETURN,
+    &single_cycles::TURNING_CYCLE,
+    &single_cycles::THREAD_CYCLE,
+    &single_cycles::FACING_CYCLE,
+    &finishing::FINISHING,
+    &rough::ROUGH_TURNING,
+    &rough::ROUGH_FACING,
+    &pattern::PATTERN_REPEATING,
+    &groove::FACE_GROOVE,
+    &groove::RADIAL_GROOVE,
+    &multi_thread::MULTI_THREAD,
+];
+
+/// A function by its place in the list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct FunctionId(u8);
+
+impl FunctionId {
+    /// Positioning.
+    pub(crate) const RAPID: Self = Self(0);
+    /// The straight cut.
+    pub(crate) const LINEAR: Self = Self(1);
+
+    #[inline]
+    pub(crate) fn get(self) -> &'static Function {
+        ALL[usize::from(self.0)]
+    }
+}
+
+/// Names of the functions that are executed; all others of the table are refused by name.
+pub fn implemented_functions() -> impl Iterator<Item = &'static str> {
+    ALL.iter().map(|function| function.name)
+}
+
+/// From a code to its function, for one control.
+pub(crate) struct Dispatch {
+    /// By code times ten; 0 is no function, else its place in the list plus one.
+    table: Box<[u8; 10_000]>,
+    pub(crate) system: CodeSystem,
+    /// U and W are increments of X and Z.
+    pub(crate) has_incremental_words: bool,
+}
+
+impl std::fmt::Debug for Dispatch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Dispatch {{ system: {:?} }}", self.system)
+    }
+}
+
+impl Dispatch {
+    pub(crate) fn new(control: &Control) -> Self {
+        let system = if control.parameters.bit("g-code-system-c") {
+            CodeSystem::C
+        } else if control.parameters.bit("g-code-system-b") {
+            CodeSystem::B
+        } else {
+            CodeSystem::A
+        };
+        let functions = Functions::load();
+        let mut table = Box::new([0u8; 10_000]);
+        for (place, function) in ALL.iter().enumerate() {
+            let Some(entry) = functions.get(function.name) else { continue };
+            if !entry.is_on(control.name) {
+                continue;
+            }
+            for code in entry.code(system).into_iter().flat_map(|text| text.split('/')).filter_map(parse_code)
+            {
+                table[usize::from(code)] = place as u8 + 1;
+            }
+        }
+        Self { table, system, has_incremental_words: system == CodeSystem::A }
+    }
+
+    /// The function that a code (times ten, below 10,000) names.
+    #[inline]
+    pub(crate) fn function(&self, code: u16) -> Option<FunctionId> {
+        let place = self.table.get(usize::from(code)).copied().unwrap_or(0);
+        place.checked_sub(1).map(FunctionId)
+    }
+}

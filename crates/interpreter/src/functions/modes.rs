@@ -1,0 +1,89 @@
+//! Functions that only change a mode: units (G20, G21), nose compensation off (G40), work coordinates (G54 to
+//! G59), speed mode (G96, G97), feed mode (G98, G99), absolute and incremental (systems B and C), plane (G18).
+//!
+//! Each acts before anything else in its block. A change of feed mode does not convert the F in force; a change
+//! back to constant spindle speed without S keeps the speed that the spindle has at that diameter.
+//!
+//! Source: modal groups, constant surface speed and feed modes of both families.
+
+use super::Function;
+use crate::block::Call;
+use crate::machine::Core;
+use crate::modal::{FeedMode, SpeedMode};
+use crate::report::Alarm;
+
+pub(super) static INCH: Function = Function::mode("inch", |core, _| units(core, true));
+pub(super) static METRIC: Function = Function::mode("metric", |core, _| units(core, false));
+
+pub(super) static NOSE_COMPENSATION_OFF: Function =
+    Function::mode("nose-compensation-off", |_, _| Ok(())).allowed_in_figure();
+
+pub(super) static PLANE_ZX: Function = Function::mode("plane-zx", |_, _| Ok(()));
+
+pub(super) static WORK_COORDINATES_1: Function =
+    Function::mode("work-coordinates-1", |core, _| work(core, 0));
+pub(super) static WORK_COORDINATES_2: Function =
+    Function::mode("work-coordinates-2", |core, _| work(core, 1));
+pub(super) static WORK_COORDINATES_3: Function =
+    Function::mode("work-coordinates-3", |core, _| work(core, 2));
+pub(super) static WORK_COORDINATES_4: Function =
+    Function::mode("work-coordinates-4", |core, _| work(core, 3));
+pub(super) static WORK_COORDINATES_5: Function =
+    Function::mode("work-coordinates-5", |core, _| work(core, 4));
+pub(super) static WORK_COORDINATES_6: Function =
+    Function::mode("work-coordinates-6", |core, _| work(core, 5));
+
+pub(super) static CONSTANT_SURFACE_SPEED: Function =
+    Function::mode("constant-surface-speed", surface_speed).allowed_in_figure();
+pub(super) static CONSTANT_SPINDLE_SPEED: Function =
+    Function::mode("constant-spindle-speed", spindle_speed).allowed_in_figure();
+
+pub(super) static FEED_PER_MINUTE: Function =
+    Function::mode("feed-per-minute", |core, _| feed_mode(core, FeedMode::PerMinute)).allowed_in_figure();
+pub(super) static FEED_PER_REVOLUTION: Function =
+    Function::mode("feed-per-revolution", |core, _| feed_mode(core, FeedMode::PerRevolution))
+        .allowed_in_figure();
+
+pub(super) static ABSOLUTE: Function = Function::mode("absolute", |core, _| increments(core, false));
+pub(super) static INCREMENTAL: Function = Function::mode("incremental", |core, _| increments(core, true));
+
+fn units(core: &mut Core, is_inch: bool) -> Result<(), Alarm> {
+    core.modal.is_inch = is_inch;
+    Ok(())
+}
+
+fn work(core: &mut Core, system: usize) -> Result<(), Alarm> {
+    core.with_new_zero(|core| core.modal.work = system);
+    Ok(())
+}
+
+fn feed_mode(core: &mut Core, mode: FeedMode) -> Result<(), Alarm> {
+    core.modal.feed_mode = mode;
+    Ok(())
+}
+
+fn increments(core: &mut Core, are_incremental: bool) -> Result<(), Alarm> {
+    core.modal.is_incremental = are_incremental;
+    Ok(())
+}
+
+fn surface_speed(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
+    if core.is_capturing() {
+        return Ok(());
+    }
+    core.modal.speed_mode = SpeedMode::Surface;
+    if core.modal.rpm_max.is_none()
+        && let Some(word) = call.word
+    {
+        core.warn("surface-speed-without-limit", &word);
+    }
+    Ok(())
+}
+
+fn spindle_speed(core: &mut Core, _: &mut Call<'_>) -> Result<(), Alarm> {
+    if !core.is_capturing() {
+        core.modal.rpm = core.present_rpm();
+        core.modal.speed_mode = SpeedMode::Constant;
+    }
+    Ok(())
+}

@@ -1,0 +1,101 @@
+//! `pattern-repeating` — the figure again and again, ever closer (G73; G75 in system C).
+//!
+//! `G73 U(Δi) W(Δk) R(d)`, then `G73 P(ns) Q(nf) U(Δu) W(Δw) F_`. Δi (radius) and Δk are the way from the last
+//! pass to the first, with sign; d is the number of passes, a count: a point in it is taken with a warning.
+//! The last pass lies at the allowances Δu (diameter) and Δw.
+//!
+//! Source: pattern repeating cycle of both families.
+
+use turnwright_control::policy::SinglePatternPass;
+use turnwright_cycles as cycles;
+use turnwright_syntax::Block;
+use turnwright_units::{Length, Radius};
+
+use super::Function;
+use crate::block::Call;
+use crate::machine::Core;
+use crate::moves::CycleMoves;
+use crate::report::Alarm;
+use crate::words::Role;
+
+pub(super) static PATTERN_REPEATING: Function =
+    Function::one_shot("pattern-repeating", pattern_repeating).with_letters(b"PQRDIK").multiple_cycle();
+
+/// Most passes that the word takes.
+const PASSES_MAX: i64 = 9_999;
+
+fn pattern_repeating(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
+    core.refuse_comma_words(call.block)?;
+    if let Some(word) = call.block.word(b'D').or(call.block.word(b'I')).or(call.block.word(b'K')) {
+        return Err(match call.block.has(b'P') {
+            true => core.one_block_form(word),
+            false => core.alarm("cycle-word-illegal", word),
+        });
+    }
+    if call.block.has(b'P') || call.block.has(b'Q') {
+        core.run_pattern(call)
+    } else {
+        core.store_pattern(call.block)
+    }
+}
+
+impl Core {
+    fn store_pattern(&mut self, block: &Block) -> Result<(), Alarm> {
+        self.refuse_letters(block, b"XZ")?;
+        if let Some(word) = block.word(b'U') {
+            self.settings.pattern_relief_x = self.radius(word, Role::RadialDepth)?;
+            self.missing_point(word);
+        }
+        if let Some(word) = block.word(b'W') {
+            self.settings.pattern_relief_z = self.length(word)?;
+            self.missing_point(word);
+        }
+        if let Some(word) = block.word(b'R') {
+            let number = self.number(word)?;
+            let count = number.scaled(0).map_or(0, |(count, _)| count);
+            if !(1..=PASSES_MAX).contains(&count) {
+                return Err(self.alarm("pass-count-illegal", word));
+            }
+            if number.has_point {
+                self.warn("count-with-point", word);
+            }
+            self.settings.pattern_passes = count as u32;
+        }
+        Ok(())
+    }
+
+    fn run_pattern(&mut self, call: &mut Call<'_>) -> Result<(), Alarm> {
+        self.refuse_letters(call.block, b"XZR")?;
+        let allowance_x = self.optional_radius(call.block, b'U', Role::XAllowance)?.unwrap_or(Radius::ZERO);
+        let allowance_z =
+            call.block.word(b'W').map(|word| self.length(word)).transpose()?.unwrap_or(Length::ZERO);
+        for word in [call.block.word(b'U'), call.block.word(b'W')].into_iter().flatten() {
+            self.missing_point(word);
+        }
+        let Some(feed) = self.feed_in_force() else {
+            return Err(self.alarm_at("feed-missing", call.word.as_ref()));
+        };
+        if self.settings.pattern_passes == 0 {
+            return Err(self.alarm_at("pass-count-illegal", call.word.as_ref()));
+        }
+        self.check_spindle();
+        let captured = self.capture_figure(call)?;
+        self.remember_range(&captured);
+        let request = cycles::PatternRequest {
+            context: self.cycle_context(feed),
+            relief_x: self.settings.pattern_relief_x,
+            relief_z: self.settings.pattern_relief_z,
+            passes: self.settings.pattern_passes,
+            allowance_x,
+            allowance_z,
+            single_pass: match self.control.policies.single_pattern_pass {
+                SinglePatternPass::Once => cycles::SinglePass::Once,
+                SinglePatternPass::Twice => cycles::SinglePass::Twice,
+            },
+        };
+        let (lines, behind) = (captured.lines(), captured.behind);
+        let pattern = cycles::pattern(captured.figure, request).map_err(|fault| self.misuse(fault, call))?;
+        self.start_cycle(CycleMoves::Pattern(Box::new(pattern)), call.code, lines, 0)?;
+        self.go(behind, call.environment)
+    }
+}

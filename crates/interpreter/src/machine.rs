@@ -1,0 +1,270 @@
+//! The step machine itself.
+
+use std::collections::{HashSet, VecDeque};
+
+use turnwright_canon::{Command, CycleOrigin};
+use turnwright_control::{Control, Offset, Setup, SetupFault};
+use turnwright_cycles::Element;
+use turnwright_diagnostics::{Diagnostic, SourceId};
+use turnwright_syntax::Block;
+use turnwright_units::{Displacement, Length, MachineTurret, Position, Radius, SurfaceSpeed, WorkTip};
+
+use crate::Environment;
+use crate::corner::PendingCorner;
+use crate::figure::FigureRange;
+use crate::flow::{Frame, ProgramIndex};
+use crate::functions::{Dispatch, FunctionId};
+use crate::limits;
+use crate::modal::{FeedMode, Modal, Settings, SingleCycle, SpeedMode};
+use crate::moves::ActiveCycle;
+use crate::report::Alarm;
+use crate::text::{Cursor, Line, Text};
+
+/// What one step gave.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// A command to be carried out.
+    Emit(Command),
+    /// The control would wait here for the world; go on by calling again.
+    NeedSync(SyncReason),
+    /// The control stops with an alarm; nothing follows.
+    Alarm(Box<Diagnostic>),
+    /// The program is over.
+    End,
+}
+
+/// What the control waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SyncReason {
+    /// Cycle start after a program stop.
+    CycleStart,
+}
+
+/// What the caller may choose for a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Blocks executed before the run is stopped.
+    pub blocks_max: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { blocks_max: limits::BLOCKS_MAX }
+    }
+}
+
+/// The place of the block in work.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct BlockPlace {
+    pub(crate) source: SourceId,
+    pub(crate) line: u32,
+    pub(crate) line_offset: u64,
+    pub(crate) first_byte: u32,
+    pub(crate) last_byte: u32,
+    pub(crate) sequence: Option<u32>,
+}
+
+/// The figure being read.
+#[derive(Debug)]
+pub(crate) struct Capture {
+    pub(crate) elements: Vec<Element>,
+    pub(crate) range: FigureRange,
+}
+
+/// Zeros of the coordinate systems, as the setup gives them.
+#[derive(Clone, Debug)]
+pub(crate) struct Zeros {
+    /// From machine zero to the first work zero.
+    pub(crate) base: Displacement<MachineTurret>,
+    /// The six systems, measured from the first's.
+    pub(crate) work: [Displacement<MachineTurret>; 6],
+    /// Tool offsets by number: geometry and wear.
+    pub(crate) offsets: Vec<(u32, Offset)>,
+}
+
+/// Everything but the block buffer, so that functions can read the block while they change the rest.
+#[derive(Debug)]
+pub(crate) struct Core {
+    pub(crate) control: Control,
+    pub(crate) settings: Settings,
+    pub(crate) dispatch: Dispatch,
+    pub(crate) options: Options,
+    pub(crate) zeros: Zeros,
+    pub(crate) modal: Modal,
+    pub(crate) text: Text,
+    pub(crate) line: Line,
+    /// First byte of the next block in the line, when the line holds several.
+    pub(crate) from: usize,
+    pub(crate) at: BlockPlace,
+    pub(crate) program: Option<u32>,
+    pub(crate) program_start: Cursor,
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) index: Option<ProgramIndex>,
+    pub(crate) out: VecDeque<Command>,
+    /// End of the last move given out.
+    pub(crate) tip: Position<WorkTip>,
+    pub(crate) active: Option<ActiveCycle>,
+    pub(crate) in_cycle: Option<CycleOrigin>,
+    pub(crate) capture: Option<Capture>,
+    pub(crate) corner: Option<PendingCorner>,
+    /// First and last sequence numbers of figures that were roughed.
+    pub(crate) roughed: Vec<(u32, u32)>,
+    pub(crate) last_spindle: Option<turnwright_canon::Action>,
+    pub(crate) blocks_run: u64,
+    pub(crate) cycle_moves: u64,
+    pub(crate) has_started: bool,
+    /// The next block may hold the number of its program.
+    pub(crate) expects_program_number: bool,
+    pub(crate) is_over: bool,
+    pub(crate) sync: Option<SyncReason>,
+    pub(crate) warnings: Vec<Diagnostic>,
+    pub(crate) warnings_given: usize,
+    pub(crate) said: HashSet<(&'static str, u32)>,
+}
+
+/// Runs one program.
+#[derive(Debug)]
+pub struct Interpreter {
+    core: Core,
+    block: Block,
+    alarm: Option<Alarm>,
+}
+
+impl Interpreter {
+    /// An interpreter at the start of text `source`, in the state after power-on. Parameters of the setup must
+    /// be in `control` already.
+    ///
+    /// # Errors
+    /// A setup whose machine or work systems make no sense.
+    pub fn new(
+        control: Control,
+        setup: &Setup,
+        source: SourceId,
+        options: Options,
+    ) -> Result<Self, SetupFault> {
+        let always =
+            control.policies.decimal_rule == turnwright_control::policy::DecimalRule::AlwaysCalculator;
+        let settings = Settings::new(&control.parameters, always);
+        let dispatch = Dispatch::new(&control);
+        let zeros = Zeros::new(setup)?;
+        let bit = |name| control.parameters.bit(name);
+        let modal = Modal {
+            position: Position::new(Radius::ZERO, Length::ZERO),
+            motion: if bit("linear-at-power-on") { FunctionId::LINEAR } else { FunctionId::RAPID },
+            motion_code: 0,
+            is_inch: bit("inch-input"),
+            feed_mode: if bit("feed-per-minute-at-power-on") {
+                FeedMode::PerMinute
+            } else {
+                FeedMode::PerRevolution
+            },
+            feed: None,
+            speed_mode: SpeedMode::Constant,
+            rpm: Default::default(),
+            surface: SurfaceSpeed::from_m_per_min(0),
+            rpm_max: None,
+            spindle: Default::default(),
+            tool: 0,
+            offset: 0,
+            work: 0,
+            preset: Displacement::new(Radius::ZERO, Length::ZERO),
+            cycle: SingleCycle::default(),
+            is_incremental: false,
+        };
+        let start = Cursor { source, offset: 0, line: 1 };
+        let mut core = Core {
+            control,
+            settings,
+            dispatch,
+            options,
+            zeros,
+            tip: modal.position,
+            modal,
+            text: Text::new(source),
+            line: Line::default(),
+            from: 0,
+            at: BlockPlace { source, line: 1, ..BlockPlace::default() },
+            program: None,
+            program_start: start,
+            frames: Vec::new(),
+            index: None,
+            out: VecDeque::new(),
+            active: None,
+            in_cycle: None,
+            capture: None,
+            corner: None,
+            roughed: Vec::new(),
+            last_spindle: None,
+            blocks_run: 0,
+            cycle_moves: 0,
+            has_started: false,
+            expects_program_number: true,
+            is_over: false,
+            sync: None,
+            warnings: Vec::new(),
+            warnings_given: 0,
+            said: HashSet::new(),
+        };
+        core.start_at_reference();
+        Ok(Self { core, block: Block::new(), alarm: None })
+    }
+
+    /// Where the tool tip stands.
+    pub fn position(&self) -> Position<WorkTip> {
+        self.core.tip
+    }
+
+    /// The control in use.
+    pub fn control(&self) -> &Control {
+        &self.core.control
+    }
+
+    /// Blocks executed so far.
+    pub fn blocks_run(&self) -> u64 {
+        self.core.blocks_run
+    }
+
+    /// Bytes of the text in work that lie behind the block in work, from its start: for progress.
+    pub fn offset(&self) -> u64 {
+        self.core.at.line_offset
+    }
+
+    /// Decimal places of the control's least increment, metric.
+    pub fn decimals(&self) -> u8 {
+        self.core.settings.metric_increment.metric_decimals()
+    }
+
+    /// Warnings given since the last call.
+    pub fn take_warnings(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.core.warnings)
+    }
+
+    /// Goes on until there is something to say.
+    #[inline]
+    pub fn step(&mut self, environment: &mut dyn Environment) -> Step {
+        loop {
+            if let Some(command) = self.core.out.pop_front() {
+                return Step::Emit(command);
+            }
+            if let Some(reason) = self.core.sync.take() {
+                return Step::NeedSync(reason);
+            }
+            if let Some(alarm) = self.alarm.take() {
+                return Step::Alarm(alarm);
+            }
+            if self.core.is_over {
+                return Step::End;
+            }
+            let result = if self.core.active.is_some() {
+                self.core.next_cycle_move()
+            } else {
+                self.core.run_block(&mut self.block, environment)
+            };
+            if let Err(alarm) = result {
+                self.core.is_over = true;
+                self.core.active = None;
+                self.alarm = Some(alarm);
+            }
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! The modal state: everything that stays in force from block to block.
+
+use turnwright_canon::SpindleState;
+use turnwright_control::Parameters;
+use turnwright_units::{
+    Displacement, LeastIncrement, Length, MachineTurret, Position, Radius, Rpm, SurfaceSpeed, WorkTip,
+};
+
+use crate::functions::FunctionId;
+
+/// Feed per minute or per revolution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FeedMode {
+    PerMinute,
+    PerRevolution,
+}
+
+/// Constant speed of the spindle or of the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SpeedMode {
+    Constant,
+    Surface,
+}
+
+/// End point and taper of a single cycle, kept while its code is in force.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SingleCycle {
+    pub(crate) x: Option<Radius>,
+    pub(crate) z: Option<Length>,
+    pub(crate) taper: Length,
+    pub(crate) start_angle_millidegrees: i64,
+    pub(crate) pass: u32,
+}
+
+/// What stays in force.
+#[derive(Clone, Debug)]
+pub(crate) struct Modal {
+    /// Where the tool tip is.
+    pub(crate) position: Position<WorkTip>,
+    /// The function of group 01 in force.
+    pub(crate) motion: FunctionId,
+    /// Its code as written, times ten.
+    pub(crate) motion_code: u16,
+    pub(crate) is_inch: bool,
+    pub(crate) feed_mode: FeedMode,
+    /// The feed word in force: mm per minute or per revolution.
+    pub(crate) feed: Option<Length>,
+    pub(crate) speed_mode: SpeedMode,
+    pub(crate) rpm: Rpm,
+    pub(crate) surface: SurfaceSpeed,
+    pub(crate) rpm_max: Option<Rpm>,
+    pub(crate) spindle: SpindleState,
+    pub(crate) tool: u32,
+    pub(crate) offset: u32,
+    /// Work coordinate system, 0 to 5.
+    pub(crate) work: usize,
+    /// Shift by coordinate setting: work zero moved by this.
+    pub(crate) preset: Displacement<MachineTurret>,
+    pub(crate) cycle: SingleCycle,
+    /// Systems B and C: X and Z are increments.
+    pub(crate) is_incremental: bool,
+}
+
+impl Modal {
+    /// The least increment of the words in force.
+    pub(crate) fn increment(&self, settings: &Settings) -> LeastIncrement {
+        if self.is_inch { settings.inch_increment } else { settings.metric_increment }
+    }
+}
+
+/// Parameters that programs and cycles consult, resolved once; data blocks of cycles write some of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Settings {
+    pub(crate) metric_increment: LeastIncrement,
+    pub(crate) inch_increment: LeastIncrement,
+    pub(crate) is_calculator: bool,
+    pub(crate) cycle_words_in_mm: bool,
+    pub(crate) linear_rapid: bool,
+    pub(crate) feed_per_rev_fine: bool,
+    pub(crate) feed_per_min_fine: bool,
+    pub(crate) arc_tolerance_mm: f64,
+    pub(crate) arc_without_radius_alarm: bool,
+    pub(crate) duplicate_word_alarm: bool,
+    pub(crate) several_auxiliary: bool,
+    pub(crate) end_of_record_allowed: bool,
+    pub(crate) plain_corner_letters: bool,
+    pub(crate) dwell_in_revolutions: bool,
+    pub(crate) run_out_tenths: u32,
+    pub(crate) run_out_angle_deg: u8,
+    pub(crate) cut_depth: Length,
+    pub(crate) cut_escape: Length,
+    pub(crate) pattern_relief_x: Radius,
+    pub(crate) pattern_relief_z: Length,
+    pub(crate) pattern_passes: u32,
+    pub(crate) groove_return: Length,
+    pub(crate) thread_finishing_passes: u32,
+    pub(crate) thread_nose_angle_deg: u8,
+    pub(crate) thread_minimum_depth: Radius,
+    pub(crate) thread_finishing_allowance: Radius,
+    pub(crate) figure_check: bool,
+    pub(crate) monotony_check: bool,
+    pub(crate) type_by_first_block: bool,
+    pub(crate) no_semi_finish: bool,
+    pub(crate) rapid_escape: bool,
+    pub(crate) offset_digits_one: bool,
+    pub(crate) geometry_by_tool_number: bool,
+}
+
+impl Settings {
+    pub(crate) fn new(parameters: &Parameters, always_calculator: bool) -> Self {
+        let bit = |name| parameters.bit(name);
+        let mm = |name: &str| Length::from_nm((parameters.value(name) * 1e6).round() as i64);
+        let count = |name: &str| parameters.value(name).clamp(0.0, 1e9) as u32;
+        let (metric_increment, inch_increment) = if bit("least-input-increment-c") {
+            (LeastIncrement::METRIC_C, LeastIncrement::INCH_C)
+        } else if bit("least-input-increment-a") {
+            (LeastIncrement::METRIC_A, LeastIncrement::INCH_A)
+        } else {
+            (LeastIncrement::METRIC_B, LeastIncrement::INCH_B)
+        };
+        Self {
+            metric_increment,
+            inch_increment,
+            is_calculator: always_calculator || bit("decimal-point-input"),
+            cycle_words_in_mm: bit("cycle-words-in-millimetres"),
+            linear_rapid: bit("linear-rapid"),
+            feed_per_rev_fine: bit("feed-per-rev-fine"),
+            feed_per_min_fine: bit("feed-per-min-fine"),
+            arc_tolerance_mm: parameters.value("arc-tolerance"),
+            arc_without_radius_alarm: bit("arc-without-radius-alarm"),
+            duplicate_word_alarm: bit("duplicate-word-alarm"),
+            several_auxiliary: bit("several-auxiliary-codes"),
+            end_of_record_allowed: bit("end-of-record-allowed"),
+            plain_corner_letters: bit("plain-corner-letters"),
+            dwell_in_revolutions: bit("dwell-in-revolutions"),
+            run_out_tenths: count("thread-run-out"),
+            run_out_angle_deg: count("thread-run-out-angle").min(89) as u8,
+            cut_depth: mm("cycle-depth-of-cut"),
+            cut_escape: mm("cycle-escape"),
+            pattern_relief_x: Radius(mm("pattern-relief-x")),
+            pattern_relief_z: mm("pattern-relief-z"),
+            pattern_passes: count("pattern-passes"),
+            groove_return: mm("groove-return"),
+            thread_finishing_passes: count("thread-finishing-passes"),
+            thread_nose_angle_deg: count("thread-nose-angle").min(120) as u8,
+            thread_minimum_depth: Radius(mm("thread-minimum-depth")),
+            thread_finishing_allowance: Radius(mm("thread-finishing-allowance")),
+            figure_check: bit("figure-check"),
+            monotony_check: bit("monotony-check"),
+            type_by_first_block: bit("type-by-first-block"),
+            no_semi_finish: bit("no-semi-finish-type-one"),
+            rapid_escape: bit("rapid-escape"),
+            offset_digits_one: bit("offset-digits-one"),
+            geometry_by_tool_number: bit("geometry-by-tool-number"),
+        }
+    }
+}

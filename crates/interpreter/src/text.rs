@@ -1,0 +1,161 @@
+//! Program text, read through a window: memory does not grow with the length of the program.
+//!
+//! In: [`Environment::read`]. Out: lines with number and offset. A line longer than [`LINE_BYTES_MAX`] is
+//! given cut off and marked; what lies behind is passed over piece by piece.
+
+use turnwright_diagnostics::SourceId;
+use turnwright_syntax::find_line_end;
+
+use crate::{Environment, ReadFault};
+
+/// Longest line that is read; a control takes a few hundred characters.
+pub const LINE_BYTES_MAX: usize = 32 * 1024;
+
+/// Bytes read at a time.
+const WINDOW_BYTES: usize = 64 * 1024;
+
+/// A place in a text where reading can go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Cursor {
+    pub(crate) source: SourceId,
+    /// Bytes from the start of the text to the start of the line.
+    pub(crate) offset: u64,
+    /// Number of the line, from 1.
+    pub(crate) line: u32,
+}
+
+/// A line that was read; its bytes are in the window until the next one is read.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Line {
+    pub(crate) start: usize,
+    pub(crate) end: usize,
+    pub(crate) number: u32,
+    pub(crate) offset: u64,
+    pub(crate) is_cut: bool,
+    is_in_head: bool,
+}
+
+/// The window.
+#[derive(Debug)]
+pub(crate) struct Text {
+    source: SourceId,
+    buffer: Vec<u8>,
+    /// Offset of the first byte of the buffer.
+    base: u64,
+    /// Start of the next line in the buffer.
+    at: usize,
+    next_line: u32,
+    is_last: bool,
+    /// The head of a line that is longer than the window.
+    head: Vec<u8>,
+}
+
+impl Text {
+    pub(crate) fn new(source: SourceId) -> Self {
+        Self { source, buffer: Vec::new(), base: 0, at: 0, next_line: 1, is_last: false, head: Vec::new() }
+    }
+
+    /// Where the next line begins.
+    pub(crate) fn cursor(&self) -> Cursor {
+        Cursor { source: self.source, offset: self.base + self.at as u64, line: self.next_line }
+    }
+
+    /// Goes to another line.
+    pub(crate) fn jump(&mut self, to: Cursor) {
+        self.next_line = to.line;
+        let end = self.base + self.buffer.len() as u64;
+        if to.source == self.source && (self.base..=end).contains(&to.offset) {
+            self.at = (to.offset - self.base) as usize;
+        } else {
+            self.source = to.source;
+            self.buffer.clear();
+            self.base = to.offset;
+            self.at = 0;
+            self.is_last = false;
+        }
+    }
+
+    /// The bytes of the line last read.
+    pub(crate) fn bytes(&self, line: &Line) -> &[u8] {
+        if line.is_in_head { &self.head[line.start..line.end] } else { &self.buffer[line.start..line.end] }
+    }
+
+    /// Reads the next line; `None` behind the last.
+    #[inline]
+    pub(crate) fn next(&mut self, environment: &mut dyn Environment) -> Result<Option<Line>, ReadFault> {
+        loop {
+            if let Some(end) = find_line_end(&self.buffer[self.at..], self.is_last) {
+                let line = self.line(self.at + end.start);
+                self.at += end.next;
+                return Ok(Some(self.limited(line)));
+            }
+            if self.is_last {
+                if self.at == self.buffer.len() {
+                    return Ok(None);
+                }
+                let line = self.line(self.buffer.len());
+                self.at = self.buffer.len();
+                return Ok(Some(self.limited(line)));
+            }
+            if self.buffer.len() - self.at > LINE_BYTES_MAX {
+                return self.long_line(environment).map(Some);
+            }
+            self.fill(environment)?;
+        }
+    }
+
+    fn line(&mut self, end: usize) -> Line {
+        let number = self.next_line;
+        self.next_line = number.saturating_add(1);
+        Line {
+            start: self.at,
+            end,
+            number,
+            offset: self.base + self.at as u64,
+            is_cut: false,
+            is_in_head: false,
+        }
+    }
+
+    fn limited(&self, mut line: Line) -> Line {
+        if line.end - line.start > LINE_BYTES_MAX {
+            line.end = line.start + LINE_BYTES_MAX;
+            line.is_cut = true;
+        }
+        line
+    }
+
+    fn fill(&mut self, environment: &mut dyn Environment) -> Result<(), ReadFault> {
+        self.base += self.at as u64;
+        self.buffer.drain(..self.at);
+        self.at = 0;
+        let kept = self.buffer.len();
+        self.buffer.resize(kept + WINDOW_BYTES, 0);
+        let offset = self.base + kept as u64;
+        let read = environment.read(self.source, offset, &mut self.buffer[kept..])?;
+        self.buffer.truncate(kept + read.min(WINDOW_BYTES));
+        self.is_last = read == 0;
+        Ok(())
+    }
+
+    /// Keeps the head of a line without end in sight and passes over the rest.
+    fn long_line(&mut self, environment: &mut dyn Environment) -> Result<Line, ReadFault> {
+        let mut line = self.line(self.at + LINE_BYTES_MAX);
+        self.head.clear();
+        self.head.extend_from_slice(&self.buffer[line.start..line.end]);
+        (line.start, line.end, line.is_cut, line.is_in_head) = (0, self.head.len(), true, true);
+        loop {
+            // Half of a CR LF may be the last byte of the piece.
+            self.at = self.buffer.len() - usize::from(self.buffer.last() == Some(&b'\r'));
+            self.fill(environment)?;
+            if let Some(end) = find_line_end(&self.buffer[self.at..], self.is_last) {
+                self.at += end.next;
+                return Ok(line);
+            }
+            if self.is_last {
+                self.at = self.buffer.len();
+                return Ok(line);
+            }
+        }
+    }
+}

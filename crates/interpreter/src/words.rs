@@ -1,0 +1,180 @@
+//! Words to quantities: decimal rules, units, increments, and the one place where an X word becomes a radius.
+//!
+//! Source: numbers and decimal points of both families; diameter and radius words by role.
+
+use turnwright_control::policy::{CycleIntegerWords, FineDigits};
+use turnwright_syntax::{Decimal, Value, Word};
+use turnwright_units::{Diameter, Length, Radius};
+
+use crate::machine::Core;
+use crate::report::Alarm;
+
+/// What a radial word means: a place or way across the work, or a distance from its surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// X of a move, of a preset, of an intermediate point.
+    XCoordinate,
+    /// U of a move.
+    XIncrement,
+    /// U of the block that runs a roughing cycle.
+    XAllowance,
+    /// Depth of cut, relief of a pattern, return of a groove.
+    RadialDepth,
+    /// I and R of arcs.
+    ArcOffset,
+    /// R of single cycles and of the threading cycle.
+    TaperRadius,
+    /// C, R, I and K of corners.
+    CornerSize,
+}
+
+impl Role {
+    const fn is_diameter(self) -> bool {
+        matches!(self, Self::XCoordinate | Self::XIncrement | Self::XAllowance)
+    }
+}
+
+const POWER: [i64; 10] =
+    [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000];
+
+impl Core {
+    /// The number of a word.
+    #[inline]
+    pub(crate) fn number(&self, word: &Word) -> Result<Decimal, Alarm> {
+        match word.value {
+            Value::Number(number) => Ok(number),
+            Value::Expression { .. } => Err(self.alarm("macro-not-supported-yet", word)),
+            Value::Missing => Err(self.alarm("address-without-value", word)),
+        }
+    }
+
+    /// A length word by the decimal rule of the control.
+    #[inline]
+    pub(crate) fn length(&self, word: &Word) -> Result<Length, Alarm> {
+        let number = self.number(word)?;
+        let counts = !(number.has_point || self.settings.is_calculator);
+        self.length_of(word, number, counts)
+    }
+
+    /// `counts`: the number counts least increments.
+    #[inline]
+    fn length_of(&self, word: &Word, number: Decimal, counts: bool) -> Result<Length, Alarm> {
+        let increment = self.modal.increment(&self.settings).nm();
+        let digits_max = POWER[usize::from(self.control.limits.number_digits.min(9))];
+        if counts {
+            if number.digits.abs() >= digits_max {
+                return Err(self.alarm("number-too-long", word));
+            }
+            return Ok(Length::from_nm(number.digits * increment));
+        }
+        let unit = if self.modal.is_inch { 25_400_000 } else { 1_000_000 };
+        if number.scale > 9 {
+            return Err(self.alarm("number-too-long", word));
+        }
+        let nm = i128::from(number.digits) * unit;
+        let scale = i128::from(POWER[usize::from(number.scale)]);
+        let step = i128::from(increment) * scale;
+        // The number in increments, cut or rounded once.
+        let half = match self.control.policies.fine_digits {
+            FineDigits::Cut => 0,
+            FineDigits::Round => step / 2 * i128::from(if number.digits < 0 { -1i8 } else { 1 }),
+        };
+        let count = (nm + half) / step;
+        if count.abs() >= i128::from(digits_max) {
+            return Err(self.alarm("number-too-long", word));
+        }
+        Ok(Length::from_nm(count as i64 * increment))
+    }
+
+    /// The one place where an X-like word becomes a radius: its role decides, not its letter.
+    #[inline]
+    pub(crate) fn radius(&self, word: &Word, role: Role) -> Result<Radius, Alarm> {
+        let length = self.length(word)?;
+        Ok(if role.is_diameter() { Diameter(length).to_radius() } else { Radius(length) })
+    }
+
+    /// A length that has no sign.
+    pub(crate) fn unsigned_length(&self, word: &Word) -> Result<Length, Alarm> {
+        let length = self.length(word)?;
+        if length.signum() < 0 { Err(self.alarm("minus-not-allowed", word)) } else { Ok(length) }
+    }
+
+    /// P and Q of the grooving and threading cycles: least increments, or millimetres by parameter.
+    pub(crate) fn cycle_length(&self, word: &Word) -> Result<Length, Alarm> {
+        let number = self.number(word)?;
+        let in_mm = match self.control.policies.cycle_integer_words {
+            CycleIntegerWords::Increments => false,
+            CycleIntegerWords::ByUnitParameter => self.settings.cycle_words_in_mm,
+        };
+        if number.has_point && !in_mm {
+            return Err(self.alarm("point-not-allowed", word));
+        }
+        self.length_of(word, number, !in_mm)
+    }
+
+    /// A whole number without sign and point, at most `max`.
+    #[inline]
+    pub(crate) fn whole(&self, word: &Word, max: u32) -> Result<u32, Alarm> {
+        let number = self.number(word)?;
+        if number.has_point {
+            return Err(self.alarm("point-not-allowed", word));
+        }
+        if number.is_negative && number.digits != 0 {
+            return Err(self.alarm("minus-not-allowed", word));
+        }
+        match u32::try_from(number.digits) {
+            Ok(value) if value <= max => Ok(value),
+            _ => Err(self.alarm("number-too-long", word)),
+        }
+    }
+
+    /// A code times ten: `G71` is 710, `G50.3` is 503.
+    #[inline]
+    pub(crate) fn code(&self, word: &Word) -> Result<u16, Alarm> {
+        let number = self.number(word)?;
+        if number.is_negative {
+            return Err(self.alarm("minus-not-allowed", word));
+        }
+        match number.scaled(1) {
+            Some((code, false)) if code < 10_000 => Ok(code as u16),
+            _ => Err(self.alarm("unusable-g-code", word)),
+        }
+    }
+
+    /// A feed word. Without a point it counts hundredths of a millimetre per revolution (or thousandths), whole
+    /// millimetres per minute (or thousandths): the parameters say which.
+    #[inline]
+    pub(crate) fn feed(&self, word: &Word, per_revolution: bool) -> Result<Length, Alarm> {
+        let number = self.number(word)?;
+        if number.is_negative && number.digits != 0 {
+            return Err(self.alarm("minus-not-allowed", word));
+        }
+        let unit: i64 = if self.modal.is_inch { 25_400_000 } else { 1_000_000 };
+        let (mul, div) = if number.has_point || self.settings.is_calculator {
+            (unit, POWER[usize::from(number.scale.min(9))])
+        } else if per_revolution {
+            // Inch: 0.0001 in, or 0.000001 in.
+            match (self.modal.is_inch, self.settings.feed_per_rev_fine) {
+                (false, false) => (10_000, 1),
+                (false, true) => (1_000, 1),
+                (true, false) => (2_540, 1),
+                (true, true) => (unit, 1_000_000),
+            }
+        } else {
+            match (self.modal.is_inch, self.settings.feed_per_min_fine) {
+                (false, false) => (unit, 1),
+                (false, true) => (1_000, 1),
+                (true, false) => (254_000, 1),
+                (true, true) => (unit, 1_000_000),
+            }
+        };
+        let digits_max = POWER[usize::from(self.control.limits.number_digits.min(9))];
+        if number.scale > 9 || number.digits >= digits_max {
+            return Err(self.alarm("number-too-long", word));
+        }
+        match number.digits.checked_mul(mul) {
+            Some(nm) => Ok(Length::from_nm(nm / div)),
+            None => Err(self.alarm("number-too-long", word)),
+        }
+    }
+}

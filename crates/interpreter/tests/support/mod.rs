@@ -1,0 +1,118 @@
+//! Running a program text in memory, for tests.
+#![allow(clippy::disallowed_methods, dead_code, reason = "tests read files; not every test uses everything")]
+
+use turnwright_canon::{Command, write_listing};
+use turnwright_control::{Control, Language, Messages, Setup};
+use turnwright_diagnostics::{Diagnostic, SourceId};
+use turnwright_interpreter::{Environment, Interpreter, Options, ReadFault, Step};
+
+/// A text in memory, and switches.
+pub struct Memory<'a> {
+    pub text: &'a [u8],
+    pub skips: &'a [u8],
+}
+
+impl Environment for Memory<'_> {
+    fn read(&mut self, _: SourceId, offset: u64, buffer: &mut [u8]) -> Result<usize, ReadFault> {
+        let rest = self.text.get(offset as usize..).unwrap_or(&[]);
+        let length = rest.len().min(buffer.len());
+        buffer[..length].copy_from_slice(&rest[..length]);
+        Ok(length)
+    }
+
+    fn skips(&self, switch: u8) -> bool {
+        self.skips.contains(&switch)
+    }
+}
+
+/// What a run gave.
+pub struct Run {
+    pub commands: Vec<Command>,
+    pub alarm: Option<Diagnostic>,
+    pub warnings: Vec<Diagnostic>,
+    pub control: Control,
+    pub decimals: u8,
+}
+
+/// How a program is run.
+#[derive(Clone, Default)]
+pub struct Conditions {
+    pub control: String,
+    pub parameters: Vec<(String, String)>,
+    pub skips: Vec<u8>,
+    pub setup: String,
+}
+
+impl Conditions {
+    pub fn on(control: &str) -> Self {
+        Self { control: control.to_string(), ..Self::default() }
+    }
+
+    pub fn with(mut self, number: &str, value: &str) -> Self {
+        self.parameters.push((number.to_string(), value.to_string()));
+        self
+    }
+}
+
+/// Runs a program to its end; refuses to run for ever.
+pub fn run(text: &[u8], conditions: &Conditions) -> Run {
+    let mut control = Control::load(&conditions.control).unwrap_or_else(|fault| panic!("{fault:?}"));
+    for (number, value) in &conditions.parameters {
+        control.parameters.set(number, value).unwrap_or_else(|fault| panic!("{fault:?}"));
+    }
+    let setup = Setup::parse(&conditions.setup).unwrap_or_else(|fault| panic!("{fault:?}"));
+    let options = Options { blocks_max: 200_000 };
+    let mut interpreter = Interpreter::new(control.clone(), &setup, SourceId(0), options)
+        .unwrap_or_else(|fault| panic!("{fault:?}"));
+    let decimals = interpreter.decimals();
+    let mut environment = Memory { text, skips: &conditions.skips };
+    let mut run = Run { commands: Vec::new(), alarm: None, warnings: Vec::new(), control, decimals };
+    loop {
+        match interpreter.step(&mut environment) {
+            Step::Emit(command) => run.commands.push(command),
+            Step::NeedSync(_) => {}
+            Step::Alarm(alarm) => {
+                run.alarm = Some(*alarm);
+                break;
+            }
+            Step::End => break,
+        }
+        assert!(run.commands.len() < 2_000_000, "too many commands for a test");
+    }
+    run.warnings = interpreter.take_warnings();
+    run
+}
+
+impl Run {
+    /// The listing, one command a line.
+    pub fn listing(&self) -> String {
+        let mut out = Vec::new();
+        for command in &self.commands {
+            write_listing(&mut out, command, self.decimals);
+            out.push(b'\n');
+        }
+        String::from_utf8(out).expect("a listing is text")
+    }
+
+    /// Diagnostics as a fixture shows them: `alarm PS0062 cut-depth-illegal 2:5-8 'U0.'`.
+    pub fn diagnostics(&self) -> String {
+        let messages = Messages::load();
+        let mut out = String::new();
+        for diagnostic in self.warnings.iter().chain(&self.alarm) {
+            let id = messages.id(diagnostic.key, self.control.alarm_ids).unwrap_or("?");
+            let severity = format!("{:?}", diagnostic.severity).to_lowercase();
+            let place = diagnostic.place.map_or(String::new(), |place| {
+                format!(" {}:{}-{}", place.line, place.column, place.end_column)
+            });
+            out.push_str(&format!("{severity} {id} {}{place}\n", diagnostic.key));
+            let text = messages.text(diagnostic, Language::English);
+            assert!(
+                !text.message.contains('?') && !text.message.is_empty(),
+                "{}: {}",
+                diagnostic.key,
+                text.message
+            );
+        }
+        out
+    }
+}

@@ -1,0 +1,349 @@
+//! The clock: one [`Timing`] a command.
+//!
+//! In: commands in order of execution. Out: seconds, length and spindle speed of each, and the sums.
+//!
+//! The clock keeps the position, the tool number and the spindle. A move whose speed is zero (feed per
+//! revolution with the spindle standing, no feed at all) has no known time: it counts no seconds and is
+//! counted in [`Clock::unknown_feeds`].
+
+use turnwright_canon::{Action, Command, Dwell, RapidPath, Shape};
+use turnwright_units::{Feed, Lead, Position, WorkTip};
+
+use crate::MachineRates;
+use crate::path::{ArcPath, point};
+use crate::spindle::{Order, Spindle};
+use crate::surface::Slowness;
+
+/// What the time of a command is spent on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// Positioning.
+    Rapid,
+    /// A cutting move.
+    Cutting,
+    /// A move in step with the spindle.
+    Threading,
+    /// Standing still by order.
+    Dwell,
+    /// A new tool number.
+    ToolChange,
+    /// A new speed of the spindle.
+    Spindle,
+    /// Everything else: coolant, auxiliary functions, stops, messages.
+    Other,
+}
+
+/// The spindle speeds of a move, rpm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RpmRange {
+    /// Slowest.
+    pub min: f64,
+    /// Fastest.
+    pub max: f64,
+}
+
+impl RpmRange {
+    /// The range that holds two speeds.
+    fn between(one: f64, other: f64) -> Self {
+        Self { min: one.min(other), max: one.max(other) }
+    }
+
+    /// The range that holds two ranges.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+}
+
+/// How long one command takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Timing {
+    /// What the time is spent on.
+    pub kind: Kind,
+    /// Where the tool stood before.
+    pub from: Position<WorkTip>,
+    /// Seconds in all.
+    pub seconds: f64,
+    /// The part of `seconds` in which a cut waited for the spindle to reach its speed.
+    pub waited_s: f64,
+    /// Length of the path, mm (X as radius); 0 when nothing moves.
+    pub length_mm: f64,
+    /// Spindle speeds asked for during a move or a dwell; `None` when the spindle stands.
+    pub rpm: Option<RpmRange>,
+}
+
+/// Sums of seconds and lengths.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Totals {
+    /// Seconds by [`Kind`], in its order; a cut's wait for the spindle is the spindle's.
+    seconds: [f64; 7],
+    /// Millimetres by [`Kind`], in its order.
+    length_mm: [f64; 7],
+}
+
+impl Totals {
+    /// Adds one command.
+    pub fn add(&mut self, timing: &Timing) {
+        self.seconds[timing.kind as usize] += timing.seconds - timing.waited_s;
+        self.seconds[Kind::Spindle as usize] += timing.waited_s;
+        self.length_mm[timing.kind as usize] += timing.length_mm;
+    }
+
+    /// Seconds spent on one kind.
+    pub const fn seconds(&self, kind: Kind) -> f64 {
+        self.seconds[kind as usize]
+    }
+
+    /// Length of the path of one kind, mm.
+    pub const fn length_mm(&self, kind: Kind) -> f64 {
+        self.length_mm[kind as usize]
+    }
+
+    /// Seconds in all.
+    pub fn total_s(&self) -> f64 {
+        self.seconds.iter().sum()
+    }
+}
+
+/// Measures commands in order of execution.
+#[derive(Clone, Debug)]
+pub struct Clock {
+    rates: MachineRates,
+    position: Position<WorkTip>,
+    tool: Option<u32>,
+    spindle: Spindle,
+    /// The speed of the thread in progress, rpm: a chain of threads keeps it.
+    thread_rpm: Option<f64>,
+    totals: Totals,
+    unknown_feeds: u64,
+}
+
+/// Seconds and length of a move, before any wait.
+struct Way {
+    seconds: f64,
+    length_mm: f64,
+}
+
+impl Clock {
+    /// A clock at zero: the tool tip at `start`, the spindle standing, the turret at an unknown station.
+    pub fn new(start: Position<WorkTip>, rates: MachineRates) -> Self {
+        Self {
+            rates,
+            position: start,
+            tool: None,
+            spindle: Spindle::new(&rates),
+            thread_rpm: None,
+            totals: Totals::default(),
+            unknown_feeds: 0,
+        }
+    }
+
+    /// Where the tool tip is.
+    pub const fn position(&self) -> Position<WorkTip> {
+        self.position
+    }
+
+    /// Tells the clock that the tip has other coordinates without having moved: another work coordinate
+    /// system, another offset.
+    pub const fn relocate(&mut self, position: Position<WorkTip>) {
+        self.position = position;
+    }
+
+    /// The sums so far.
+    pub const fn totals(&self) -> &Totals {
+        &self.totals
+    }
+
+    /// Commands whose time is unknown because nothing would turn or move.
+    pub const fn unknown_feeds(&self) -> u64 {
+        self.unknown_feeds
+    }
+
+    /// Measures the next command.
+    pub fn advance(&mut self, command: &Command) -> Timing {
+        let timing = match &command.action {
+            Action::Rapid { to, path } => self.rapid(*to, *path),
+            Action::Feed { to, shape, feed } => self.cut(*to, shape, *feed),
+            Action::Thread { to, lead, lead_end, .. } => self.thread(*to, *lead, lead_end.unwrap_or(*lead)),
+            Action::Dwell(dwell) => self.dwell(*dwell),
+            Action::Spindle { state, speed, rpm_max } => {
+                self.spindle.command(*state, *speed, *rpm_max, &self.rates);
+                self.spindle.aim(self.spindle.order.rpm_at(self.position.x.to_mm()));
+                self.still(Kind::Spindle, self.spindle.seconds_to_target())
+            }
+            Action::Tool { tool, .. } => {
+                // Tool 0 cancels an offset, the turret stays; the first call turns it from where nobody knows.
+                let turns = *tool != 0 && self.tool != Some(*tool);
+                if turns {
+                    self.tool = Some(*tool);
+                }
+                self.still(Kind::ToolChange, if turns { self.rates.tool_change_s } else { 0.0 })
+            }
+            Action::Coolant(_) | Action::Auxiliary { .. } => self.still(Kind::Other, self.rates.auxiliary_s),
+            Action::Stop | Action::OptionalStop | Action::End | Action::Message(_) => {
+                self.still(Kind::Other, 0.0)
+            }
+        };
+        if timing.kind != Kind::Threading {
+            self.thread_rpm = None;
+        }
+        if let Some(to) = command.action.end_point() {
+            self.position = to;
+        }
+        self.totals.add(&timing);
+        timing
+    }
+
+    /// A command that does not move, of so many seconds when that is a time at all.
+    fn still(&mut self, kind: Kind, seconds: f64) -> Timing {
+        let seconds = if seconds.is_finite() && seconds > 0.0 { seconds } else { 0.0 };
+        self.spindle.run(seconds);
+        Timing { kind, from: self.position, seconds, waited_s: 0.0, length_mm: 0.0, rpm: None }
+    }
+
+    /// Minutes as seconds; a way whose time is not known is counted and takes none.
+    fn known_minutes(&mut self, minutes: Option<f64>, length_mm: f64) -> Way {
+        let seconds = minutes.map(|minutes| minutes * 60.0).filter(|seconds| seconds.is_finite());
+        self.unknown_feeds += u64::from(seconds.is_none());
+        Way { seconds: seconds.unwrap_or(0.0), length_mm }
+    }
+
+    fn rapid(&mut self, to: Position<WorkTip>, path: RapidPath) -> Timing {
+        let way = to - self.position;
+        let (dx_mm, dz_mm) = (way.x.to_mm().abs(), way.z.to_mm().abs());
+        let (rate_x, rate_z) = (self.rates.rapid_x_mm_per_min, self.rates.rapid_z_mm_per_min);
+        let (minutes, length_mm) = match (minutes(dx_mm, rate_x), minutes(dz_mm, rate_z)) {
+            (Some(x), Some(z)) => {
+                let length_mm = match path {
+                    RapidPath::Straight => libm::hypot(dx_mm, dz_mm),
+                    RapidPath::EachAxis => {
+                        // Both axes until the nearer end, then the other one alone.
+                        let both = x.min(z);
+                        let together = |way_mm: f64, minutes: f64| {
+                            if minutes > 0.0 { way_mm * (both / minutes) } else { 0.0 }
+                        };
+                        let (x_mm, z_mm) = (together(dx_mm, x), together(dz_mm, z));
+                        libm::hypot(x_mm, z_mm) + (dx_mm - x_mm) + (dz_mm - z_mm)
+                    }
+                };
+                // On the straight line the slower axis sets the time, and moves at its own rate.
+                (Some(x.max(z)), length_mm)
+            }
+            _ => (None, libm::hypot(dx_mm, dz_mm)),
+        };
+        let way = self.known_minutes(minutes, length_mm);
+        // At rapid the spindle goes at once to the speed of the end point.
+        let before = self.spindle.target_rpm();
+        let after = self.spindle.order.rpm_at(to.x.to_mm());
+        self.spindle.aim(after);
+        self.spindle.run(way.seconds);
+        Timing {
+            kind: Kind::Rapid,
+            from: self.position,
+            seconds: way.seconds,
+            waited_s: 0.0,
+            length_mm: way.length_mm,
+            rpm: turning(RpmRange::between(before, after)),
+        }
+    }
+
+    fn cut(&mut self, to: Position<WorkTip>, shape: &Shape, feed: Feed) -> Timing {
+        let (start, end) = (point(self.position), point(to));
+        let arc = match shape {
+            Shape::Line => None,
+            Shape::Arc { turn, centre } => Some(ArcPath::new(self.position, to, *centre, *turn)),
+        };
+        let length_mm =
+            arc.map_or_else(|| libm::hypot(end.x - start.x, end.z - start.z), |arc| arc.length_mm());
+        let cutting_max = self.rates.cutting_max_mm_per_min;
+        let minutes = match (feed, self.spindle.order) {
+            (Feed::PerMinute(feed), _) => minutes(length_mm, feed.0.to_mm().min(cutting_max)),
+            (Feed::PerRevolution(feed), Order::Constant(rpm)) => {
+                minutes(length_mm, (feed.0.to_mm() * rpm).min(cutting_max))
+            }
+            (Feed::PerRevolution(feed), Order::Surface(law)) => {
+                Slowness::new(feed.0.to_mm(), law, cutting_max).map(|slowness| match arc {
+                    None => slowness.line_minutes(start.x, end.x, length_mm),
+                    Some(arc) => arc.circles().map(|circle| slowness.circle_minutes(&circle)).sum(),
+                })
+            }
+        };
+        let rpm = turning(self.speeds_along(start.x, end.x, arc));
+        let waited_s = self.wait_for(self.spindle.order.rpm_at(start.x));
+        let way = self.known_minutes(minutes, length_mm);
+        self.spindle.follow(self.spindle.order.rpm_at(end.x));
+        Timing {
+            kind: Kind::Cutting,
+            from: self.position,
+            seconds: waited_s + way.seconds,
+            waited_s,
+            length_mm: way.length_mm,
+            rpm,
+        }
+    }
+
+    /// The spindle speeds along a line or an arc.
+    fn speeds_along(&self, start_x_mm: f64, end_x_mm: f64, arc: Option<ArcPath>) -> RpmRange {
+        let (mut low, mut high) = (start_x_mm.min(end_x_mm), start_x_mm.max(end_x_mm));
+        for turn in arc.iter().flat_map(ArcPath::turning_points) {
+            (low, high) = (low.min(turn.x), high.max(turn.x));
+        }
+        let nearest = if low <= 0.0 && high >= 0.0 { 0.0 } else { low.abs().min(high.abs()) };
+        let order = self.spindle.order;
+        RpmRange::between(order.rpm_at(low.abs().max(high.abs())), order.rpm_at(nearest))
+    }
+
+    /// Waits until the spindle turns at `rpm`, in seconds.
+    fn wait_for(&mut self, rpm: f64) -> f64 {
+        self.spindle.aim(rpm);
+        let seconds = self.spindle.seconds_to_target();
+        self.spindle.run(seconds);
+        seconds
+    }
+
+    fn thread(&mut self, to: Position<WorkTip>, lead: Lead, lead_end: Lead) -> Timing {
+        let way = to - self.position;
+        let (dx_mm, dz_mm) = (way.x.to_mm().abs(), way.z.to_mm().abs());
+        let rpm = self.thread_rpm.unwrap_or_else(|| self.spindle.order.rpm_at(self.position.x.to_mm()));
+        self.thread_rpm = Some(rpm);
+        let waited_s = self.wait_for(rpm);
+        // A lead that changes evenly with the turns covers the way in as many turns as its mean does.
+        let mean_lead_mm = (lead.0.to_mm() + lead_end.0.to_mm()) / 2.0;
+        let known =
+            self.known_minutes(minutes(dx_mm.max(dz_mm), mean_lead_mm * rpm), libm::hypot(dx_mm, dz_mm));
+        Timing {
+            kind: Kind::Threading,
+            from: self.position,
+            seconds: waited_s + known.seconds,
+            waited_s,
+            length_mm: known.length_mm,
+            rpm: turning(RpmRange::between(rpm, rpm)),
+        }
+    }
+
+    fn dwell(&mut self, dwell: Dwell) -> Timing {
+        let rpm = self.spindle.target_rpm();
+        let minutes = match dwell {
+            Dwell::Time(seconds) => Some(seconds.0 / 60.0),
+            Dwell::Turns(turns) => minutes(turns.0, rpm),
+        };
+        let seconds = self.known_minutes(minutes, 0.0).seconds;
+        Timing { rpm: turning(RpmRange::between(rpm, rpm)), ..self.still(Kind::Dwell, seconds) }
+    }
+}
+
+/// Minutes for `way` at `per_minute`; `None` when that is not a speed. No way takes no time at any speed.
+fn minutes(way: f64, per_minute: f64) -> Option<f64> {
+    if way == 0.0 {
+        Some(0.0)
+    } else if per_minute > 0.0 && per_minute.is_finite() {
+        Some(way / per_minute).filter(|minutes| minutes.is_finite())
+    } else {
+        None
+    }
+}
+
+/// A range of speeds, unless the spindle stands.
+fn turning(range: RpmRange) -> Option<RpmRange> {
+    (range.max > 0.0).then_some(range)
+}

@@ -1,0 +1,95 @@
+//! What a machine can do, as far as time is concerned.
+
+use turnwright_units::Rpm;
+
+/// The rates of a machine. X rates are those of the slide: millimetres of radius a minute.
+///
+/// The default is an assumed small production lathe, the same as `data/machines/generic-lathe.toml`; a setup
+/// file overwrites it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MachineRates {
+    /// Rapid traverse of X, mm of radius per minute.
+    pub rapid_x_mm_per_min: f64,
+    /// Rapid traverse of Z, mm per minute.
+    pub rapid_z_mm_per_min: f64,
+    /// No cutting move is faster along its path, mm per minute.
+    pub cutting_max_mm_per_min: f64,
+    /// From one turret station to another, seconds.
+    pub tool_change_s: f64,
+    /// How fast the spindle speeds up and slows down, rpm per second; 0 for at once.
+    pub spindle_ramp_rpm_per_s: f64,
+    /// Coolant and other auxiliary functions, seconds each.
+    pub auxiliary_s: f64,
+    /// The spindle turns no faster.
+    pub rpm_max: Option<Rpm>,
+    /// The spindle turns no slower while it follows the diameter, rpm.
+    pub rpm_min_surface: u32,
+}
+
+impl Default for MachineRates {
+    fn default() -> Self {
+        Self {
+            rapid_x_mm_per_min: 12_000.0,
+            rapid_z_mm_per_min: 16_000.0,
+            cutting_max_mm_per_min: 8_000.0,
+            tool_change_s: 1.5,
+            spindle_ramp_rpm_per_s: 1_000.0,
+            auxiliary_s: 0.2,
+            rpm_max: Some(Rpm(4_000)),
+            rpm_min_surface: 20,
+        }
+    }
+}
+
+impl MachineRates {
+    /// The key of the first value that no machine can have: a rate that is not above zero, a time or a ramp
+    /// below zero, or a number that is not finite. [`crate::Clock`] counts moves at such a rate as unknown.
+    pub fn first_fault(&self) -> Option<&'static str> {
+        let positive = |value: f64| value.is_finite() && value > 0.0;
+        let not_negative = |value: f64| value.is_finite() && value >= 0.0;
+        [
+            ("rapid_x_mm_per_min", positive(self.rapid_x_mm_per_min)),
+            ("rapid_z_mm_per_min", positive(self.rapid_z_mm_per_min)),
+            ("cutting_max_mm_per_min", positive(self.cutting_max_mm_per_min)),
+            ("tool_change_s", not_negative(self.tool_change_s)),
+            ("spindle_ramp_rpm_per_s", not_negative(self.spindle_ramp_rpm_per_s)),
+            ("auxiliary_s", not_negative(self.auxiliary_s)),
+        ]
+        .into_iter()
+        .find_map(|(key, sound)| (!sound).then_some(key))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_is_the_generic_lathe_of_the_data_folder() {
+        let text = include_str!("../../../data/machines/generic-lathe.toml");
+        let value = |key: &str| -> f64 {
+            let line =
+                text.lines().find(|line| line.split('=').next().is_some_and(|name| name.trim() == key));
+            let value = line.and_then(|line| line.split('=').nth(1)).expect(key);
+            value.split('#').next().unwrap_or("").trim().parse().expect(key)
+        };
+        let rates = MachineRates::default();
+        assert_eq!(value("rapid_x_mm_per_min"), rates.rapid_x_mm_per_min);
+        assert_eq!(value("rapid_z_mm_per_min"), rates.rapid_z_mm_per_min);
+        assert_eq!(value("cutting_max_mm_per_min"), rates.cutting_max_mm_per_min);
+        assert_eq!(value("tool_change_s"), rates.tool_change_s);
+        assert_eq!(value("spindle_ramp_rpm_per_s"), rates.spindle_ramp_rpm_per_s);
+        assert_eq!(value("auxiliary_s"), rates.auxiliary_s);
+        assert_eq!(Some(value("rpm_max")), rates.rpm_max.map(|rpm| f64::from(rpm.0)));
+        assert_eq!(value("rpm_min_surface"), f64::from(rates.rpm_min_surface));
+    }
+
+    #[test]
+    fn a_rate_of_zero_is_named() {
+        assert_eq!(MachineRates::default().first_fault(), None);
+        let rates = MachineRates { rapid_z_mm_per_min: 0.0, ..MachineRates::default() };
+        assert_eq!(rates.first_fault(), Some("rapid_z_mm_per_min"));
+        let rates = MachineRates { auxiliary_s: f64::NAN, ..MachineRates::default() };
+        assert_eq!(rates.first_fault(), Some("auxiliary_s"));
+    }
+}

@@ -1,0 +1,141 @@
+//! The spindle: what speed is asked for at a place, and how fast it really turns meanwhile.
+
+use turnwright_canon::{SpindleSpeed, SpindleState};
+use turnwright_units::Rpm;
+
+use crate::MachineRates;
+
+/// No spindle turns faster, rpm: the limit on the axis when neither program nor machine gives one.
+pub const RPM_FENCE: f64 = 100_000.0;
+
+/// The speeds that constant surface speed asks for: `surface` / radius between two limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SurfaceLaw {
+    /// Speed × radius, rpm·mm: 1000·V / 2π.
+    pub(crate) rpm_mm: f64,
+    /// Lower limit, rpm; never above `rpm_max`.
+    pub(crate) rpm_min: f64,
+    /// Upper limit, rpm; finite.
+    pub(crate) rpm_max: f64,
+}
+
+impl SurfaceLaw {
+    /// The speed at a distance from the axis (mm, either sign), rpm.
+    pub(crate) fn rpm_at(self, x_mm: f64) -> f64 {
+        let x_mm = x_mm.abs();
+        // On the axis the law asks for infinity, which the upper limit answers.
+        if x_mm == 0.0 { self.rpm_max } else { (self.rpm_mm / x_mm).clamp(self.rpm_min, self.rpm_max) }
+    }
+}
+
+/// What is asked of the spindle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Order {
+    /// The same speed everywhere, rpm.
+    Constant(f64),
+    /// A speed that follows the diameter.
+    Surface(SurfaceLaw),
+}
+
+impl Order {
+    /// The speed asked for at a distance from the axis (mm), rpm.
+    pub(crate) fn rpm_at(self, x_mm: f64) -> f64 {
+        match self {
+            Self::Constant(rpm) => rpm,
+            Self::Surface(law) => law.rpm_at(x_mm),
+        }
+    }
+}
+
+/// The spindle in time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spindle {
+    /// What is asked for while cutting.
+    pub(crate) order: Order,
+    /// +1 clockwise, −1 counter-clockwise: turning round passes through zero.
+    direction: f64,
+    /// Speed asked for at the moment, signed, rpm.
+    target_rpm: f64,
+    /// Real speed, signed, rpm.
+    actual_rpm: f64,
+    /// Change of speed, rpm per second; 0 for at once.
+    ramp_rpm_per_s: f64,
+}
+
+impl Spindle {
+    /// A standing spindle.
+    pub(crate) fn new(rates: &MachineRates) -> Self {
+        let ramp = rates.spindle_ramp_rpm_per_s;
+        Self {
+            order: Order::Constant(0.0),
+            direction: 1.0,
+            target_rpm: 0.0,
+            actual_rpm: 0.0,
+            ramp_rpm_per_s: if ramp.is_finite() && ramp > 0.0 { ramp } else { 0.0 },
+        }
+    }
+
+    /// Takes a new order. The program's limit holds only while the speed follows the diameter.
+    pub(crate) fn command(
+        &mut self,
+        state: SpindleState,
+        speed: SpindleSpeed,
+        rpm_limit: Option<Rpm>,
+        rates: &MachineRates,
+    ) {
+        let machine_max = rates.rpm_max.map_or(RPM_FENCE, |rpm| f64::from(rpm.0)).min(RPM_FENCE);
+        self.order = match (state, speed) {
+            (SpindleState::Stop, _) => Order::Constant(0.0),
+            (_, SpindleSpeed::Constant(rpm)) => Order::Constant(f64::from(rpm.0).min(machine_max)),
+            (_, SpindleSpeed::Surface(surface)) => {
+                let rpm_mm = surface.0.to_mm() / std::f64::consts::TAU;
+                let rpm_max = rpm_limit.map_or(machine_max, |rpm| f64::from(rpm.0).min(machine_max));
+                if rpm_mm > 0.0 && rpm_max > 0.0 {
+                    let rpm_min = f64::from(rates.rpm_min_surface).min(rpm_max);
+                    Order::Surface(SurfaceLaw { rpm_mm, rpm_min, rpm_max })
+                } else {
+                    Order::Constant(0.0)
+                }
+            }
+        };
+        match state {
+            SpindleState::Clockwise => self.direction = 1.0,
+            SpindleState::CounterClockwise => self.direction = -1.0,
+            SpindleState::Stop => {}
+        }
+    }
+
+    /// The speed asked for at the moment, rpm.
+    pub(crate) fn target_rpm(&self) -> f64 {
+        self.target_rpm.abs()
+    }
+
+    /// Asks for a speed (rpm); it is reached as time goes by.
+    pub(crate) fn aim(&mut self, rpm: f64) {
+        self.target_rpm = self.direction * rpm;
+    }
+
+    /// Seconds until the speed asked for is reached.
+    pub(crate) fn seconds_to_target(&self) -> f64 {
+        let change = (self.target_rpm - self.actual_rpm).abs();
+        let seconds = change / self.ramp_rpm_per_s;
+        // No ramp is no wait.
+        if seconds.is_finite() { seconds } else { 0.0 }
+    }
+
+    /// Lets `seconds` go by.
+    pub(crate) fn run(&mut self, seconds: f64) {
+        if seconds >= self.seconds_to_target() {
+            self.actual_rpm = self.target_rpm;
+        } else {
+            let way = seconds * self.ramp_rpm_per_s;
+            self.actual_rpm += if self.target_rpm > self.actual_rpm { way } else { -way };
+        }
+    }
+
+    /// The spindle turns at `rpm`: it has followed a cut.
+    pub(crate) fn follow(&mut self, rpm: f64) {
+        self.aim(rpm);
+        self.actual_rpm = self.target_rpm;
+    }
+}

@@ -1,0 +1,413 @@
+//! What a program adds up to: its operations, how far it reaches, how long it takes.
+//!
+//! In: every command with its [`Timing`], in order of execution. Out: [`Operation`]s, [`Extents`], [`Totals`].
+//!
+//! An operation is what a machinist would call one: it begins where the tool number changes, where a move
+//! belongs to another cycle than the move before, or where moves enter or leave cycles. Consecutive blocks of
+//! the same modal cycle are one operation. Commands that do not move belong to the operation they stand in.
+//!
+//! Memory is bounded: operations past [`OPERATIONS_MAX`] are added to the last one.
+
+use turnwright_canon::{Action, Command, CycleLabel, Origin, Shape};
+use turnwright_units::{Length, Position, Radius, WorkTip};
+
+use crate::path::{ArcPath, length_from_mm};
+use crate::{Kind, RpmRange, Timing, Totals};
+
+/// Operations kept apart; later ones are added to the last.
+pub const OPERATIONS_MAX: usize = 10_000;
+
+/// How far moves reach, imaginary tool tip in the active work coordinate system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extents {
+    /// Lowest X.
+    pub x_min: Radius,
+    /// Highest X.
+    pub x_max: Radius,
+    /// Lowest Z.
+    pub z_min: Length,
+    /// Highest Z.
+    pub z_max: Length,
+}
+
+impl Extents {
+    /// The extents of one place.
+    fn of(x: Radius, z: Length) -> Self {
+        Self { x_min: x, x_max: x, z_min: z, z_max: z }
+    }
+
+    /// The extents of both.
+    fn with(self, other: Self) -> Self {
+        Self {
+            x_min: self.x_min.min(other.x_min),
+            x_max: self.x_max.max(other.x_max),
+            z_min: self.z_min.min(other.z_min),
+            z_max: self.z_max.max(other.z_max),
+        }
+    }
+
+    /// The extents of a move, with the points where an arc turns round (rounded to the nanometre).
+    fn of_move(action: &Action, from: Position<WorkTip>, to: Position<WorkTip>) -> Self {
+        let mut extents = Self::of(from.x, from.z).with(Self::of(to.x, to.z));
+        if let Action::Feed { shape: Shape::Arc { turn, centre }, .. } = action {
+            for turn in ArcPath::new(from, to, *centre, *turn).turning_points() {
+                extents = extents.with(Self::of(Radius(length_from_mm(turn.x)), length_from_mm(turn.z)));
+            }
+        }
+        extents
+    }
+}
+
+/// Adds `new` to extents or speeds that may not have begun.
+fn join<T: Copy>(known: &mut Option<T>, new: T, with: impl Fn(T, T) -> T) {
+    *known = Some(known.map_or(new, |known| with(known, new)));
+}
+
+/// What kind of work an operation is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum OperationKind {
+    /// Nothing moves.
+    Standing,
+    /// Rapids only.
+    Positioning,
+    /// Cutting moves.
+    Turning,
+    /// Cutting moves on the spindle axis only.
+    Drilling,
+    /// Moves in step with the spindle.
+    Threading,
+}
+
+/// A stretch of the program that a machinist would give one name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Operation {
+    /// Turret station, when one has been called.
+    pub tool: Option<u32>,
+    /// Offset number: the first that is not 0.
+    pub offset: u32,
+    /// The cycle that made the moves.
+    pub label: Option<CycleLabel>,
+    /// What kind of work it is.
+    pub kind: OperationKind,
+    /// The program text that the lines count in.
+    pub source: u32,
+    /// Lowest line of `source` that took part; 0 when none did.
+    pub first_line: u32,
+    /// Highest line of `source` that took part.
+    pub last_line: u32,
+    /// Passes: those that a cycle numbered, else unbroken runs of cutting moves.
+    pub passes: u32,
+    /// Length of cutting and threading moves, mm.
+    pub cutting_mm: f64,
+    /// Length of rapids, mm.
+    pub rapid_mm: f64,
+    /// Seconds in all.
+    pub seconds: f64,
+}
+
+impl Operation {
+    fn new(tool: Option<u32>, offset: u32, label: Option<CycleLabel>, origin: &Origin) -> Self {
+        Self {
+            tool,
+            offset,
+            label,
+            kind: OperationKind::Standing,
+            source: origin.source,
+            first_line: origin.line,
+            last_line: origin.line,
+            passes: 0,
+            cutting_mm: 0.0,
+            rapid_mm: 0.0,
+            seconds: 0.0,
+        }
+    }
+
+    fn add_line(&mut self, origin: &Origin) {
+        if origin.source == self.source {
+            self.first_line = self.first_line.min(origin.line);
+            self.last_line = self.last_line.max(origin.line);
+        }
+    }
+}
+
+/// Adds up a program.
+#[derive(Clone, Debug, Default)]
+pub struct Summary {
+    operations: Vec<Operation>,
+    merged_operations: u64,
+    cutting: Option<Extents>,
+    all: Option<Extents>,
+    rpm: Option<RpmRange>,
+    totals: Totals,
+    tool: Option<u32>,
+    offset: u32,
+    /// Cycle of the last move.
+    label: Option<CycleLabel>,
+    /// The operation that runs has moved.
+    moved: bool,
+    /// Line and pass of the last numbered pass.
+    pass: Option<(u32, u32)>,
+    /// The last move was a cutting one.
+    cutting_now: bool,
+}
+
+impl Summary {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The operations in order.
+    pub fn operations(&self) -> &[Operation] {
+        &self.operations
+    }
+
+    /// Operations that were added to the last one because [`OPERATIONS_MAX`] was reached.
+    pub const fn merged_operations(&self) -> u64 {
+        self.merged_operations
+    }
+
+    /// How far cutting and threading moves reach, `None` when there are none.
+    pub const fn cutting_extents(&self) -> Option<Extents> {
+        self.cutting
+    }
+
+    /// How far all moves reach, `None` when there are none.
+    pub const fn all_extents(&self) -> Option<Extents> {
+        self.all
+    }
+
+    /// Spindle speeds of cutting and threading moves, `None` when the spindle never turned in one.
+    pub const fn rpm(&self) -> Option<RpmRange> {
+        self.rpm
+    }
+
+    /// Seconds and lengths by kind.
+    pub const fn totals(&self) -> &Totals {
+        &self.totals
+    }
+
+    /// Adds one command.
+    pub fn add(&mut self, command: &Command, timing: &Timing) {
+        self.totals.add(timing);
+        let origin = &command.origin;
+        if let Action::Tool { tool, offset } = command.action {
+            self.call_tool(tool, offset, origin);
+        }
+        let end = command.action.end_point();
+        let label = origin.cycle.map(|cycle| cycle.label);
+        let enters = end.is_some() && self.moved && self.label != label;
+        if enters || self.operations.is_empty() {
+            self.begin(label, origin);
+        }
+        let Some(operation) = self.operations.last_mut() else { return };
+        operation.add_line(origin);
+        operation.seconds += timing.seconds;
+        if let Some(to) = end {
+            // The first move names an operation that has only stood so far.
+            if operation.kind == OperationKind::Standing {
+                operation.label = label;
+            }
+            (self.label, self.moved) = (label, true);
+            self.add_move(command, timing, to);
+        }
+    }
+
+    fn call_tool(&mut self, tool: u32, offset: u32, origin: &Origin) {
+        self.offset = offset;
+        if tool != 0 && self.tool != Some(tool) {
+            self.tool = Some(tool);
+            // What only stood before the first tool belongs to it.
+            match self.operations.last_mut() {
+                Some(last) if last.kind == OperationKind::Standing && last.tool.is_none() => {
+                    (last.tool, last.offset) = (Some(tool), offset);
+                }
+                _ => self.begin(None, origin),
+            }
+        } else if let Some(last) = self.operations.last_mut()
+            && last.offset == 0
+        {
+            last.offset = offset;
+        }
+    }
+
+    fn begin(&mut self, label: Option<CycleLabel>, origin: &Origin) {
+        (self.pass, self.cutting_now, self.moved) = (None, false, false);
+        if self.operations.len() < OPERATIONS_MAX {
+            self.operations.push(Operation::new(self.tool, self.offset, label, origin));
+        } else {
+            self.merged_operations += 1;
+        }
+    }
+
+    fn add_move(&mut self, command: &Command, timing: &Timing, to: Position<WorkTip>) {
+        let extents = Extents::of_move(&command.action, timing.from, to);
+        join(&mut self.all, extents, Extents::with);
+        let cuts = matches!(timing.kind, Kind::Cutting | Kind::Threading);
+        if cuts {
+            join(&mut self.cutting, extents, Extents::with);
+            if let Some(rpm) = timing.rpm {
+                join(&mut self.rpm, rpm, RpmRange::with);
+            }
+        }
+        let Some(operation) = self.operations.last_mut() else { return };
+        if cuts {
+            operation.cutting_mm += timing.length_mm;
+            let on_axis = extents.x_min == Radius::ZERO && extents.x_max == Radius::ZERO;
+            operation.kind = kind_with(operation.kind, timing.kind, on_axis);
+        } else {
+            operation.rapid_mm += timing.length_mm;
+            if operation.kind == OperationKind::Standing {
+                operation.kind = OperationKind::Positioning;
+            }
+        }
+        match command.origin.cycle {
+            Some(cycle) => {
+                let pass = (command.origin.line, cycle.pass);
+                if cycle.pass > 0 && self.pass != Some(pass) {
+                    self.pass = Some(pass);
+                    operation.passes += 1;
+                }
+            }
+            None if cuts && !self.cutting_now => operation.passes += 1,
+            None => {}
+        }
+        self.cutting_now = cuts;
+    }
+}
+
+/// The kind of an operation with one more cutting move.
+const fn kind_with(kind: OperationKind, of_move: Kind, on_axis: bool) -> OperationKind {
+    use OperationKind::{Drilling, Positioning, Standing, Threading, Turning};
+    match (kind, of_move) {
+        (Threading, _) | (_, Kind::Threading) => Threading,
+        (Standing | Positioning | Drilling, _) if on_axis => Drilling,
+        _ => Turning,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use turnwright_canon::{CycleOrigin, Phase, RapidPath, Turn};
+    use turnwright_units::{Angle, Feed, FeedPerMinute, Lead};
+
+    use super::*;
+    use crate::{Clock, MachineRates};
+
+    /// Diameter and Z in mm.
+    fn at(diameter: i32, z: i32) -> Position<WorkTip> {
+        Position::new(Radius(Length::from_mm(diameter).half()), Length::from_mm(z))
+    }
+
+    fn rapid(diameter: i32, z: i32) -> Action {
+        Action::Rapid { to: at(diameter, z), path: RapidPath::EachAxis }
+    }
+
+    fn feed(diameter: i32, z: i32) -> Action {
+        let feed = Feed::PerMinute(FeedPerMinute(Length::from_mm(100)));
+        Action::Feed { to: at(diameter, z), shape: Shape::Line, feed }
+    }
+
+    /// Line, cycle label and pass (0: no cycle), action.
+    fn summed(program: &[(u32, u16, u32, Action)]) -> Summary {
+        let mut clock = Clock::new(at(100, 100), MachineRates::default());
+        let mut summary = Summary::new();
+        for (line, label, pass, action) in program {
+            let mut origin = Origin::line(*line);
+            if *label > 0 {
+                origin.cycle =
+                    Some(CycleOrigin { label: CycleLabel(*label), pass: *pass, phase: Phase::Cut });
+            }
+            let command = Command { action: action.clone(), origin };
+            let timing = clock.advance(&command);
+            summary.add(&command, &timing);
+        }
+        assert_eq!(summary.totals(), clock.totals());
+        summary
+    }
+
+    #[test]
+    fn tools_and_cycles_part_a_program_into_operations() {
+        let thread = Action::Thread {
+            to: at(20, -20),
+            lead: Lead(Length::from_mm(1)),
+            lead_end: None,
+            start_angle: Angle::ZERO,
+        };
+        let summary = summed(&[
+            (1, 0, 0, Action::Coolant(turnwright_canon::Coolant::On)),
+            (2, 0, 0, Action::Tool { tool: 1, offset: 0 }),
+            (3, 0, 0, Action::Tool { tool: 1, offset: 11 }),
+            (4, 0, 0, rapid(50, 2)),
+            // Two blocks of one modal cycle, three passes.
+            (5, 900, 1, feed(46, -30)),
+            (5, 900, 1, rapid(50, 2)),
+            (6, 900, 1, feed(42, -30)),
+            (6, 900, 2, feed(40, -30)),
+            // Out of the cycle: two cuts in one run, then another run.
+            (7, 0, 0, feed(40, -32)),
+            (8, 0, 0, feed(44, -32)),
+            (9, 0, 0, rapid(44, 2)),
+            (10, 0, 0, feed(30, 2)),
+            (11, 0, 0, Action::Tool { tool: 1, offset: 0 }),
+            (12, 0, 0, Action::Tool { tool: 2, offset: 2 }),
+            (13, 760, 1, thread),
+            (14, 0, 0, Action::Tool { tool: 3, offset: 3 }),
+            (15, 0, 0, rapid(0, 2)),
+            (16, 0, 0, feed(0, -10)),
+        ]);
+        let seen: Vec<_> = summary
+            .operations()
+            .iter()
+            .map(|o| (o.tool, o.offset, o.label.map(|l| l.0), o.kind, (o.first_line, o.last_line), o.passes))
+            .collect();
+        assert_eq!(
+            seen,
+            [
+                (Some(1), 11, None, OperationKind::Positioning, (1, 4), 0),
+                (Some(1), 11, Some(900), OperationKind::Turning, (5, 6), 3),
+                (Some(1), 11, None, OperationKind::Turning, (7, 11), 2),
+                (Some(2), 2, Some(760), OperationKind::Threading, (12, 13), 1),
+                (Some(3), 3, None, OperationKind::Drilling, (14, 16), 1),
+            ]
+        );
+        let seconds: f64 = summary.operations().iter().map(|operation| operation.seconds).sum();
+        assert!((seconds - summary.totals().total_s()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn extents_hold_the_belly_of_an_arc() {
+        // Half a circle of radius 5 about d20 z0, from z5 to z-5 over the top: it reaches d30.
+        let arc = Action::Feed {
+            to: at(20, -5),
+            shape: Shape::Arc { turn: Turn::CounterClockwise, centre: at(20, 0) },
+            feed: Feed::PerMinute(FeedPerMinute(Length::from_mm(100))),
+        };
+        let summary = summed(&[(1, 0, 0, rapid(20, 5)), (2, 0, 0, arc)]);
+        let mm = |mm: i32| Length::from_mm(mm);
+        let belly = Extents { x_min: Radius(mm(10)), x_max: Radius(mm(15)), z_min: mm(-5), z_max: mm(5) };
+        assert_eq!(summary.cutting_extents(), Some(belly));
+        let all = Extents { x_max: Radius(mm(50)), z_max: mm(100), ..belly };
+        assert_eq!(summary.all_extents(), Some(all));
+    }
+
+    #[test]
+    fn operations_are_bounded_and_none_is_lost() {
+        let extra = 25;
+        let program: Vec<_> = (0..OPERATIONS_MAX as u32 + extra)
+            .map(|index| (index + 1, 700 + (index % 2) as u16 * 10, 1, feed(10 + (index % 2) as i32, 0)))
+            .collect();
+        let summary = summed(&program);
+        assert_eq!(summary.operations().len(), OPERATIONS_MAX);
+        assert_eq!(summary.merged_operations(), u64::from(extra));
+        let length: f64 = summary.operations().iter().map(|operation| operation.cutting_mm).sum();
+        assert!((length - summary.totals().length_mm(Kind::Cutting)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_program_without_moves_has_no_extents() {
+        let summary = summed(&[(1, 0, 0, Action::Stop), (2, 0, 0, Action::End)]);
+        assert_eq!((summary.all_extents(), summary.cutting_extents(), summary.rpm()), (None, None, None));
+        assert_eq!(summary.operations()[0].kind, OperationKind::Standing);
+    }
+}

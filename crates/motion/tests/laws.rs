@@ -1,0 +1,335 @@
+//! Laws on seeded random moves: the closed forms against an integration that knows nothing of them.
+
+use std::f64::consts::{PI, TAU};
+
+use turnwright_canon::{Action, Command, Dwell, Origin, RapidPath, Shape, SpindleSpeed, SpindleState, Turn};
+use turnwright_motion::{ArcPath, Clock, MachineRates, SPIRAL_TOLERANCE, Summary, TIME_TOLERANCE, Timing};
+use turnwright_units::{
+    Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position, Radius, Revolutions, Rpm, Seconds,
+    SurfaceSpeed, WorkTip,
+};
+
+/// xorshift64*, seeded: a failure names its case.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn chance(&mut self, one_in: u64) -> bool {
+        self.next().is_multiple_of(one_in)
+    }
+}
+
+fn length(mm: f64) -> Length {
+    Length::from_nm((mm * 1e6).round() as i64)
+}
+
+fn at(x_mm: f64, z_mm: f64) -> Position<WorkTip> {
+    Position::new(Radius(length(x_mm)), length(z_mm))
+}
+
+/// A surface speed, its limits and a feed.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    m_per_min: u32,
+    rpm_max: u32,
+    rpm_min: u32,
+    feed_mm_per_rev: f64,
+    cutting_max: f64,
+}
+
+impl Cut {
+    fn random(random: &mut Random) -> Self {
+        Self {
+            m_per_min: random.between(5.0, 400.0) as u32,
+            rpm_max: random.between(200.0, 6000.0) as u32,
+            rpm_min: if random.chance(3) { 0 } else { random.between(0.0, 800.0) as u32 },
+            feed_mm_per_rev: (random.between(0.01, 1.0) * 1e4).round() / 1e4,
+            cutting_max: random.between(100.0, 8000.0).round(),
+        }
+    }
+
+    /// Seconds a millimetre takes at a place, straight from the words of the manual.
+    fn seconds_per_mm(&self, x_mm: f64) -> f64 {
+        let diameter = 2.0 * x_mm.abs();
+        let mut rpm = 1000.0 * f64::from(self.m_per_min) / (PI * diameter);
+        rpm = rpm.max(f64::from(self.rpm_min)).min(f64::from(self.rpm_max));
+        60.0 / (self.feed_mm_per_rev * rpm).min(self.cutting_max)
+    }
+
+    fn timing(&self, from: Position<WorkTip>, to: Position<WorkTip>, shape: Shape) -> Timing {
+        let rates = MachineRates {
+            cutting_max_mm_per_min: self.cutting_max,
+            rpm_max: None,
+            rpm_min_surface: self.rpm_min,
+            ..MachineRates::default()
+        };
+        let mut clock = Clock::new(from, rates);
+        let surface = SpindleSpeed::Surface(SurfaceSpeed::from_m_per_min(self.m_per_min));
+        let state = SpindleState::Clockwise;
+        run(&mut clock, Action::Spindle { state, speed: surface, rpm_max: Some(Rpm(self.rpm_max)) });
+        let feed = Feed::PerRevolution(FeedPerRevolution(length(self.feed_mm_per_rev)));
+        run(&mut clock, Action::Feed { to, shape, feed })
+    }
+}
+
+fn run(clock: &mut Clock, action: Action) -> Timing {
+    clock.advance(&Command { action, origin: Origin::line(1) })
+}
+
+/// Adaptive Simpson over 0 to 1, begun with many panels so that no corner is missed.
+fn integrate(f: &dyn Fn(f64) -> f64) -> f64 {
+    fn refine(f: &dyn Fn(f64) -> f64, left: [f64; 2], right: [f64; 2], tolerance: f64, depth: u32) -> f64 {
+        let middle = (left[0] + right[0]) / 2.0;
+        let at_middle = f(middle);
+        let (one, two) = ((left[0] + middle) / 2.0, (middle + right[0]) / 2.0);
+        let (at_one, at_two) = (f(one), f(two));
+        let width = right[0] - left[0];
+        let rough = width / 6.0 * (left[1] + 4.0 * at_middle + right[1]);
+        let fine = width / 12.0 * (left[1] + 4.0 * at_one + 2.0 * at_middle + 4.0 * at_two + right[1]);
+        if depth == 0 || (fine - rough).abs() <= tolerance {
+            fine
+        } else {
+            refine(f, left, [middle, at_middle], tolerance / 2.0, depth - 1)
+                + refine(f, [middle, at_middle], right, tolerance / 2.0, depth - 1)
+        }
+    }
+    const PANELS: u32 = 64;
+    let scale: f64 = (0..PANELS).map(|i| f((f64::from(i) + 0.5) / f64::from(PANELS))).sum::<f64>();
+    (0..PANELS)
+        .map(|i| {
+            let (a, b) = (f64::from(i) / f64::from(PANELS), f64::from(i + 1) / f64::from(PANELS));
+            refine(f, [a, f(a)], [b, f(b)], scale * 1e-15, 40)
+        })
+        .sum()
+}
+
+#[track_caller]
+fn near(value: f64, expected: f64, tolerance: f64, case: &dyn std::fmt::Debug) {
+    assert!((value - expected).abs() <= expected * tolerance, "{value} instead of {expected}: {case:?}");
+}
+
+#[test]
+fn lines_at_surface_speed_agree_with_integration() {
+    let mut random = Random(0x1dea_0001);
+    for _ in 0..1500 {
+        let cut = Cut::random(&mut random);
+        let (x0, z0) = (random.between(-20.0, 80.0), random.between(-100.0, 5.0));
+        // Also hardly any X, and none.
+        let dx = match random.next() % 4 {
+            0 => 0.0,
+            1 => random.between(-2e-6, 2e-6),
+            _ => random.between(-80.0, 80.0),
+        };
+        let (from, to) = (at(x0, z0), at(x0 + dx, z0 + random.between(-50.0, 50.0)));
+        let (start, end) = (from.x.to_mm(), to.x.to_mm());
+        let mm = (end - start).hypot((to.z - from.z).to_mm());
+        let expected = mm * integrate(&|t| cut.seconds_per_mm(start + (end - start) * t));
+        let timing = cut.timing(from, to, Shape::Line);
+        near(timing.seconds, expected, TIME_TOLERANCE, &(cut, from, to));
+        near(timing.length_mm, mm, 1e-12, &(from, to));
+    }
+}
+
+/// Seconds of an arc whose radius grows evenly with the angle, by integration.
+fn arc_seconds(cut: &Cut, arc: &ArcPath) -> f64 {
+    let growth = (arc.end_radius_mm - arc.start_radius_mm) / arc.sweep_rad;
+    integrate(&|t| {
+        let angle = arc.sweep_rad * t;
+        let radius = arc.start_radius_mm + growth * angle;
+        let x = arc.centre.x + radius * (arc.start_rad + angle).sin();
+        radius.hypot(growth) * arc.sweep_rad.abs() * cut.seconds_per_mm(x)
+    })
+}
+
+#[test]
+fn circles_at_surface_speed_agree_with_integration() {
+    let mut random = Random(0x1dea_0002);
+    for _ in 0..1500 {
+        let cut = Cut::random(&mut random);
+        let radius = random.between(0.1, 40.0);
+        let (cx, cz) = (random.between(-10.0, 60.0), random.between(-50.0, 0.0));
+        let start = random.between(-PI, PI);
+        let sweep = random.between(-TAU, TAU);
+        let on = |angle: f64| at(cx + radius * angle.sin(), cz + radius * angle.cos());
+        let turn = if sweep < 0.0 { Turn::Clockwise } else { Turn::CounterClockwise };
+        let (from, to, centre) = (on(start), on(start + sweep), at(cx, cz));
+        let arc = ArcPath::new(from, to, centre, turn);
+        assert!((arc.sweep_rad - sweep).abs() < 1e-4, "{arc:?} {sweep}");
+        let timing = cut.timing(from, to, Shape::Arc { turn, centre });
+        // Ends rounded to the nanometre make every circle a spiral by a hair: hence the last term.
+        let hair = (arc.end_radius_mm - arc.start_radius_mm).abs() / radius;
+        near(timing.seconds, arc_seconds(&cut, &arc), TIME_TOLERANCE + hair, &(cut, arc));
+        near(timing.length_mm, radius * sweep.abs(), 1e-4 / sweep.abs().min(1.0), &arc);
+    }
+}
+
+#[test]
+fn spirals_at_surface_speed_agree_with_integration() {
+    let mut random = Random(0x1dea_0003);
+    for _ in 0..300 {
+        let cut = Cut::random(&mut random);
+        let (cx, cz) = (random.between(0.0, 60.0), random.between(-50.0, 0.0));
+        let start_radius = random.between(1.0, 40.0);
+        let end_radius = start_radius * (1.0 + random.between(-0.5, 0.5) * random.between(0.0, 1.0).powi(4));
+        let (start, sweep) = (random.between(-PI, PI), random.between(0.05, TAU));
+        let on = |angle: f64, radius: f64| at(cx + radius * angle.sin(), cz + radius * angle.cos());
+        let turn = Turn::CounterClockwise;
+        let (from, to, centre) = (on(start, start_radius), on(start + sweep, end_radius), at(cx, cz));
+        let arc = ArcPath::new(from, to, centre, turn);
+        let timing = cut.timing(from, to, Shape::Arc { turn, centre });
+        near(timing.seconds, arc_seconds(&cut, &arc), SPIRAL_TOLERANCE, &(cut, arc));
+    }
+}
+
+#[test]
+fn a_line_cut_in_two_takes_as_long() {
+    let mut random = Random(0x1dea_0004);
+    for _ in 0..2000 {
+        let cut = Cut::random(&mut random);
+        let mut place = || at(random.between(-20.0, 80.0), random.between(-90.0, 5.0));
+        let (from, to) = (place(), place());
+        // Halved exactly: both ways are made even.
+        let middle = at((from.x.to_mm() + to.x.to_mm()) / 2.0, (from.z.to_mm() + to.z.to_mm()) / 2.0);
+        let halves =
+            cut.timing(from, middle, Shape::Line).seconds + cut.timing(middle, to, Shape::Line).seconds;
+        // The middle is rounded to the nanometre.
+        near(halves, cut.timing(from, to, Shape::Line).seconds, 1e-5, &(cut, from, to));
+    }
+}
+
+#[test]
+fn turning_points_are_the_ends_of_the_extents() {
+    let mut random = Random(0x1dea_0005);
+    for _ in 0..2000 {
+        let (cx, cz, radius) =
+            (random.between(-50.0, 50.0), random.between(-50.0, 0.0), random.between(0.1, 40.0));
+        let (start, sweep) = (random.between(-PI, PI), random.between(-TAU, TAU));
+        let on = |angle: f64| at(cx + radius * angle.sin(), cz + radius * angle.cos());
+        let turn = if sweep < 0.0 { Turn::Clockwise } else { Turn::CounterClockwise };
+        let (from, to) = (on(start), on(start + sweep));
+        let arc = ArcPath::new(from, to, at(cx, cz), turn);
+        let mut ends: Vec<_> = arc.turning_points().map(|point| point.x).collect();
+        ends.extend([from.x.to_mm(), to.x.to_mm()]);
+        let samples: Vec<_> =
+            (0..=4000).map(|i| cx + radius * (start + sweep * f64::from(i) / 4000.0).sin()).collect();
+        for pick in [f64::min, f64::max] {
+            let (end, sample) = (ends.iter().copied().reduce(pick), samples.iter().copied().reduce(pick));
+            let (end, sample) = (end.expect("an end"), sample.expect("a sample"));
+            assert!((end - sample).abs() < 1e-4, "{end} {sample} {arc:?}");
+        }
+    }
+}
+
+/// Anything that the types allow, sensible or not.
+fn any_action(random: &mut Random) -> Action {
+    let number = |random: &mut Random| match random.next() % 6 {
+        0 => 0.0,
+        1 => f64::NAN,
+        2 => f64::INFINITY,
+        3 => -1.0,
+        _ => random.between(0.0, 10.0),
+    };
+    let any_length = |random: &mut Random| match random.next() % 8 {
+        0 => Length::ZERO,
+        1 => Length::from_nm(i64::MAX),
+        2 => Length::from_nm(i64::MIN),
+        3 => Length::from_nm(1),
+        4 => Length::from_nm(random.next() as i64),
+        _ => length(random.between(-100.0, 100.0)),
+    };
+    let place = |random: &mut Random| Position::new(Radius(any_length(random)), any_length(random));
+    match random.next() % 8 {
+        0 => Action::Rapid { to: place(random), path: RapidPath::EachAxis },
+        1 => Action::Rapid { to: place(random), path: RapidPath::Straight },
+        2 | 3 => {
+            let turn = if random.chance(2) { Turn::Clockwise } else { Turn::CounterClockwise };
+            let shape =
+                if random.chance(2) { Shape::Line } else { Shape::Arc { turn, centre: place(random) } };
+            let feed = if random.chance(4) {
+                Feed::PerMinute(FeedPerMinute(any_length(random)))
+            } else {
+                Feed::PerRevolution(FeedPerRevolution(any_length(random)))
+            };
+            Action::Feed { to: place(random), shape, feed }
+        }
+        4 => Action::Thread {
+            to: place(random),
+            lead: Lead(any_length(random)),
+            lead_end: random.chance(2).then(|| Lead(any_length(random))),
+            start_angle: Angle::ZERO,
+        },
+        5 if random.chance(2) => Action::Dwell(Dwell::Time(Seconds(number(random)))),
+        5 => Action::Dwell(Dwell::Turns(Revolutions(number(random)))),
+        6 => Action::Tool { tool: (random.next() % 3) as u32, offset: 1 },
+        _ => Action::Spindle {
+            state: if random.chance(5) { SpindleState::Stop } else { SpindleState::CounterClockwise },
+            speed: if random.chance(2) {
+                SpindleSpeed::Constant(Rpm(random.next() as u32))
+            } else {
+                SpindleSpeed::Surface(SurfaceSpeed(any_length(random)))
+            },
+            rpm_max: random.chance(2).then(|| Rpm((random.next() % 3) as u32 * 1000)),
+        },
+    }
+}
+
+#[test]
+fn nothing_makes_a_time_that_is_no_number() {
+    let mut random = Random(0x1dea_0006);
+    for round in 0..400 {
+        let mut rate = || match random.next() % 8 {
+            0 => 0.0,
+            1 => f64::NAN,
+            2 => f64::INFINITY,
+            3 => -5.0,
+            4 => f64::MIN_POSITIVE,
+            _ => random.between(1.0, 10_000.0),
+        };
+        let rates = MachineRates {
+            rapid_x_mm_per_min: rate(),
+            rapid_z_mm_per_min: rate(),
+            cutting_max_mm_per_min: rate(),
+            tool_change_s: rate(),
+            spindle_ramp_rpm_per_s: rate(),
+            auxiliary_s: rate(),
+            rpm_max: None,
+            rpm_min_surface: 0,
+        };
+        let mut clock = Clock::new(at(10.0, 10.0), rates);
+        let mut summary = Summary::new();
+        for _ in 0..100 {
+            let command = Command { action: any_action(&mut random), origin: Origin::line(1) };
+            let timing = clock.advance(&command);
+            summary.add(&command, &timing);
+            let rpm = timing.rpm.map_or([0.0, 0.0], |rpm| [rpm.min, rpm.max]);
+            for number in [timing.seconds, timing.waited_s, timing.length_mm, rpm[0], rpm[1]] {
+                assert!(number.is_finite() && number >= 0.0, "{round} {rates:?} {command:?} {timing:?}");
+            }
+        }
+        assert!(clock.totals().total_s().is_finite());
+        assert_eq!(clock.totals(), summary.totals());
+    }
+}
+
+#[test]
+fn the_same_program_twice_gives_the_same_bits() {
+    let seconds = || {
+        let mut random = Random(0x1dea_0007);
+        let mut clock = Clock::new(at(100.0, 100.0), MachineRates::default());
+        for _ in 0..500 {
+            run(&mut clock, any_action(&mut random));
+        }
+        clock.totals().total_s().to_bits()
+    };
+    assert_eq!(seconds(), seconds());
+}

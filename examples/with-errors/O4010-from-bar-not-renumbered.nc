@@ -1,0 +1,18 @@
+O4010
+(CONTROL fanuc-0i-mate-tb)
+(INTENDED MISTAKE, as printed: a block was put in but the figure keeps its old numbers, so P60 misses its first block N50)
+N10 T0101
+N20 G0 X110. Z10. S800 M3
+N30 G0 X150. Z30.
+N40 G73 U25. W10. R13
+N50 G73 P60 Q120 U0.4 W0.1 F0.3
+N50 G0 X50. Z1. S1000
+N60 G1 Z-10. F0.15
+N70 X60. Z-15.
+N80 Z-25.
+N90 G2 X80. Z-35. R10.
+N100 G1 X90. Z-40.
+N120 G0 X150. Z30.
+N130 G70 P60 Q120
+N140 G28 X100. Z150.
+N150 M30
