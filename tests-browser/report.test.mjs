@@ -162,6 +162,8 @@ test("steps go forwards and backwards, by buttons, keys and the slider", async (
   assert.equal((await state()).step, 2);
   assert.match(await readout(), /X⌀/);
   assert.equal(await page.locator(".row.current").count(), 1);
+  await page.evaluate(() => turnwright.selectLine(1));
+  assert.match(await readout(), /^line 1/, "what was chosen last is described");
   assert.ok((await painted("layer-marks")) > 0, "the tool is shown");
   await page.click("#back");
   assert.equal((await state()).step, 1);

@@ -1,1 +1,37 @@
-fn main() {}
+//! `turnwright`: the command line.
+//!
+//! In: program texts, setup files, options, the environment. Out: diagnostics, reports, traces and pictures,
+//! and an exit status: 0 nothing found, 1 an alarm or an error, 2 usage or a file that cannot be read or
+//! written. This is the only crate that reads, prints and writes; what a library user would want is not here.
+//!
+//! One file a command in `commands/`. Sentences of the user interface are in `data/texts.toml`.
+
+mod arguments;
+mod commands;
+mod environment;
+mod execution;
+mod finding;
+mod fault;
+mod output;
+mod render;
+mod report;
+mod session;
+mod speech;
+mod table;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::arguments::Arguments;
+
+fn main() -> ExitCode {
+    match Arguments::try_parse() {
+        Ok(arguments) => fault::guarded(arguments).into(),
+        Err(error) => {
+            // A help text that nobody reads to its end is no fault.
+            let _ = error.print();
+            ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+        }
+    }
+}

@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn a_wrong_name_gets_the_nearest_one() {
-        let fault = Control::load("fanuc-0i-ft").expect_err("no such control");
+        let fault = Control::load("fanuc-0i-tff").expect_err("no such control");
         assert!(matches!(fault, ControlFault::Unknown { nearest: Some("fanuc-0i-tf"), .. }), "{fault:?}");
     }
 }

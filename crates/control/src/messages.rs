@@ -34,7 +34,7 @@ pub struct MessageText {
 struct Ids {
     three: Option<String>,
     four: Option<String>,
-    gsk: Option<String>,
+    named: Option<String>,
     own: Option<String>,
 }
 
@@ -74,7 +74,7 @@ impl Messages {
         let own = match ids {
             AlarmIds::Three => &entry.three,
             AlarmIds::Four => &entry.four,
-            AlarmIds::Gsk => &entry.gsk,
+            AlarmIds::Named => &entry.named,
         };
         own.as_deref().or(entry.own.as_deref())
     }

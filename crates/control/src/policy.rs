@@ -61,7 +61,7 @@ policies! {
     /// Words for automatic corners of a linear move.
     corner_words: CornerWords {
         /// `I`, `K`, `R`, or plain `C` and `R` by parameter, or the same with a comma.
-        Fanuc,
+        ChamferAndRadius,
         /// `L` for the chamfer, `D` for the fillet.
         LengthAndFillet,
     }
@@ -206,7 +206,7 @@ pub enum AlarmIds {
     /// Two letters and four digits.
     Four,
     /// Own names where no number is known.
-    Gsk,
+    Named,
 }
 
 /// Limits of a control, each with an alarm of its own.

@@ -134,6 +134,7 @@
   // ---- the state ---------------------------------------------------------------------------------------
   let selectedFrom = 0, selectedTo = 0;   // lines, 0 for none
   let pickedMove = -1;                    // the move chosen in the picture
+  let linesLast = false;                  // whether lines were chosen after the last step
   let step = steps;                       // moves done
   let part = 0;                           // how much of the next move is done, while playing
   let lit = new Uint32Array(0);           // highlighted segments
@@ -176,21 +177,36 @@
   };
   // Strokes the segments from..to, or those that `pick` names, kind by kind, without what is outside the plot.
   // Some hundred segments a stroke: browsers are slow with one path of very many crossing lines.
-  const STROKE_SEGMENTS = 200;
+  // In a long path strokes that fall on the same pixels are drawn once.
+  const STROKE_SEGMENTS = 20, MANY_SEGMENTS = 5000;
+  const pixels = (i) => {
+    const side = (px, limit) => Math.max(0, Math.min(8191, Math.round(px) + (8192 - limit) / 2));
+    const at = (x, z) => side(toPxX(z), width) * 8192 + side(toPxY(x), height);
+    const [a, b] = [at(startX[i], startZ[i]), at(endX[i], endZ[i])];
+    return Math.min(a, b) * 67108864 + Math.max(a, b);
+  };
   const strokeSegments = (c, from, to, pick, look) => {
     const z0 = toZ(0), z1 = toZ(width), x0 = toX(height), x1 = toX(0);
-    c.lineJoin = c.lineCap = "round";
+    const seen = to - from > MANY_SEGMENTS ? new Set() : null;
+    c.lineJoin = seen ? "bevel" : "round";
+    c.lineCap = seen ? "butt" : "round";
     for (let k = 0; k < KINDS.length; k++) {
       const [lineWidth, dash] = LOOK[KINDS[k]];
       c.lineWidth = look?.width ?? lineWidth + (look?.wider ?? 0);
       c.setLineDash(look?.solid ? [] : dash);
       c.strokeStyle = thinned(look?.colour ?? colours[KINDS[k]], look?.share ?? 1);
       c.beginPath();
+      seen?.clear();
       let penX = NaN, penZ = NaN, waiting = 0;
       for (let at = from; at < to; at++) {
         const i = pick ? pick[at] : at;
         if (kind[i] !== k) continue;
         if (box[4 * i] > z1 || box[4 * i + 2] < z0 || box[4 * i + 1] > x1 || box[4 * i + 3] < x0) continue;
+        if (seen && sweep[i] === 0) {
+          const spot = pixels(i);
+          if (seen.has(spot)) continue;
+          seen.add(spot);
+        }
         if (waiting >= STROKE_SEGMENTS) {
           c.stroke();
           c.beginPath();
@@ -285,8 +301,11 @@
     c.lineWidth = 1; c.stroke();
     for (const start of [-Math.PI / 2, Math.PI / 2]) { c.beginPath(); c.moveTo(x, y); c.arc(x, y, 6, start, start + Math.PI / 2); c.fill(); }
   };
+  let drawnView = null;
   const drawPath = () => {
     const c = pathLayer;
+    drawnView = { ...view };
+    for (const { canvas } of layers) canvas.style.transform = "";
     c.clearRect(0, 0, width, height);
     drawAxes(c);
     inPlot(c, () => {
@@ -358,8 +377,21 @@
     }
     return along(segmentEnd(step) - 1, 1);
   };
-  let queued = false;
+  // After a change of the view. A long path is first moved as a picture and drawn anew when the hand rests.
+  const LONG_PATH = 20000, REST_MS = 140;
+  let queued = false, resting = 0;
   const redraw = () => {
+    if (segments > LONG_PATH && drawnView) {
+      const grown = view.pxPerMm / drawnView.pxPerMm;
+      const right = (drawnView.z - view.z) * view.pxPerMm, down = (view.x - drawnView.x) * view.pxPerMm;
+      for (const { canvas } of layers) {
+        canvas.style.transformOrigin = `${plotMiddleX()}px ${plotMiddleY()}px`;
+        canvas.style.transform = `translate(${right}px, ${down}px) scale(${grown})`;
+      }
+      clearTimeout(resting);
+      resting = setTimeout(drawPath, REST_MS);
+      return;
+    }
     if (queued) return;
     queued = true;
     requestAnimationFrame(() => { queued = false; drawPath(); });
@@ -516,8 +548,8 @@
     const spans = (parts) => parts.map((text, at) => element("span", {}, at === 0 ? element("b", {}, text) : text));
     const target = byId("readout");
     if (pickedMove >= 0) target.replaceChildren(...spans(describe(pickedMove)));
-    else if (step > 0 && step < steps) target.replaceChildren(...spans(describe(step - 1)));
-    else if (step === 0 && steps > 0) target.replaceChildren(...spans([word("readout-start")]));
+    else if (!linesLast && step > 0 && step < steps) target.replaceChildren(...spans(describe(step - 1)));
+    else if (!linesLast && step === 0 && steps > 0) target.replaceChildren(...spans([word("readout-start")]));
     else if (selectedFrom > 0) {
       const count = new Set(movesOfSelection()).size;
       target.replaceChildren(...spans([
@@ -539,6 +571,7 @@
     selectedFrom = from;
     selectedTo = to;
     pickedMove = move;
+    linesLast = from > 0;
     const all = new Set();
     const light = (one) => { for (let i = path.first[one]; i < segmentEnd(one); i++) all.add(i); };
     movesOfSelection().forEach(light);
@@ -557,6 +590,7 @@
     else { drawDone(); drawMarks(); }
     if (before !== step) {
       pickedMove = -1;
+      linesLast = false;
       if (step > 0 && step < steps) scrollTo(path.line[step - 1]);
       markRows();
       readout();

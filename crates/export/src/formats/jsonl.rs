@@ -162,7 +162,7 @@ fn write_origin(out: &mut Vec<u8>, origin: &Origin) {
         if whole < 10 {
             out.push(b'0');
         }
-        write_fixed(out, whole.into(), 0);
+        write_whole(out, whole.into());
         if tenth != 0 {
             out.extend_from_slice(&[b'.', b'0' + tenth as u8]);
         }
@@ -177,6 +177,7 @@ fn write_origin(out: &mut Vec<u8>, origin: &Origin) {
     out.extend_from_slice(b"}\n");
 }
 
+#[inline(always)]
 fn write_end_point(out: &mut Vec<u8>, to: Position<WorkTip>, decimals: u8) {
     write_length(out, br#","x":"#, to.x.to_diameter().0, decimals);
     write_length(out, br#","z":"#, to.z, decimals);
@@ -190,14 +191,34 @@ fn distance(a: Position<WorkTip>, b: Position<WorkTip>) -> Length {
     Length::from_mm_rounded(mm, LeastIncrement::METRIC_C).unwrap_or(Length::ZERO)
 }
 
+// The names are constants: copied in line they cost a few stores, as calls a fifth of the time of a command.
+#[inline(always)]
 fn write_length(out: &mut Vec<u8>, name: &[u8], length: Length, decimals: u8) {
     out.extend_from_slice(name);
     write_millimetres(out, length, decimals);
 }
 
+#[inline(always)]
 fn write_number(out: &mut Vec<u8>, name: &[u8], number: u32) {
     out.extend_from_slice(name);
-    write_fixed(out, number.into(), 0);
+    if number < 10 {
+        out.push(b'0' + number as u8);
+    } else {
+        write_whole(out, number);
+    }
+}
+
+/// Half of the numbers of a line are whole and short: worth a writer without sign and point.
+fn write_whole(out: &mut Vec<u8>, number: u32) {
+    let mut digits = [0u8; 10];
+    let mut at = digits.len();
+    let mut rest = number;
+    while rest > 0 || at == digits.len() {
+        at -= 1;
+        digits[at] = b'0' + (rest % 10) as u8;
+        rest /= 10;
+    }
+    out.extend_from_slice(&digits[at..]);
 }
 
 /// A time or a number of turns. What is no number is written as JSON's `null`.
@@ -400,6 +421,16 @@ mod tests {
             let line = at_line_seven(Action::Message(text.into()));
             let value: serde_json::Value = serde_json::from_str(&line).expect("JSON");
             assert_eq!(value["text"], text);
+        }
+    }
+
+    #[test]
+    fn whole_numbers_are_written_as_the_standard_library_does() {
+        for number in [0, 1, 9, 10, 99, 100, 12_345, u32::MAX] {
+            let mut out = Vec::new();
+            write_number(&mut out, b"", number);
+            write_whole(&mut out, number);
+            assert_eq!(String::from_utf8_lossy(&out), format!("{number}{number}"));
         }
     }
 

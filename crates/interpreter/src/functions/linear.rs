@@ -50,8 +50,8 @@ impl Core {
         use turnwright_control::policy::CornerWords;
         let strange: &[u8] = match self.control.policies.corner_words {
             CornerWords::LengthAndFillet => b"RCIK",
-            CornerWords::Fanuc if self.settings.plain_corner_letters => b"LD",
-            CornerWords::Fanuc => b"CLD",
+            CornerWords::ChamferAndRadius if self.settings.plain_corner_letters => b"LD",
+            CornerWords::ChamferAndRadius => b"CLD",
         };
         match strange.iter().find_map(|letter| block.word(*letter)) {
             Some(word) => Err(self.alarm("illegal-address", word)),

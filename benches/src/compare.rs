@@ -1,0 +1,146 @@
+//! Ours and the peer in turn, medians of processor time, ratios.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use crate::generate;
+
+/// What one run took.
+#[derive(Clone, Copy)]
+struct Cost {
+    cpu_s: f64,
+    memory_mib: f64,
+}
+
+/// Generates, runs, prints.
+pub fn run(blocks: u64, rounds: usize) -> Result<(), String> {
+    let folder = std::env::temp_dir().join("turnwright-bench");
+    if !folder.join(format!("done-{blocks}")).exists() {
+        generate::all(&folder, blocks)?;
+        std::fs::write(folder.join(format!("done-{blocks}")), "").map_err(|error| error.to_string())?;
+    }
+    let peer = Peer::find(&folder);
+    if peer.is_none() {
+        println!("rs274 is not installed (Debian: linuxcnc-uspace): own figures only");
+    }
+    reading(&folder, rounds)?;
+    let rows = [
+        ("P1 G1 X Z", "lines", "interpret", true, 1),
+        ("P3 N G1 X Z F", "numbered", "interpret", true, 1),
+        ("P4 arcs I K", "arcs-centre", "interpret", true, 1),
+        ("P4 arcs R", "arcs-radius", "interpret", true, 1),
+        ("P8 trace of G1", "lines", "listing", false, 1),
+        ("S1 five times", "lines5", "interpret", true, 5),
+    ];
+    let mut once = 0.0;
+    for (label, name, step, silent, times) in rows {
+        let rounds = if times > 1 { 3 } else { rounds };
+        let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+        for _ in 0..rounds {
+            ours.push(own(step, &folder.join(format!("{name}.nc")))?);
+            if let Some(peer) = &peer {
+                theirs.push(peer.run(&folder.join(format!("{name}.ngc")), silent)?);
+            }
+        }
+        let mine = median(&ours);
+        let count = (blocks * times) as f64;
+        print!("{label:16} {:8.3} s  {:6.1} M blocks/s  {:6.1} MiB", mine.cpu_s, count / mine.cpu_s / 1e6, mine.memory_mib);
+        if !theirs.is_empty() {
+            let peer = median(&theirs);
+            print!("   rs274 {:7.3} s  {:6.1} MiB   ratio {:.1}", peer.cpu_s, peer.memory_mib, peer.cpu_s / mine.cpu_s);
+        }
+        println!();
+        match (name, step) {
+            ("lines", "interpret") => once = mine.cpu_s,
+            ("lines5", _) => println!("S2 growth        {:8.2} (five times the blocks, time per block)", mine.cpu_s / 5.0 / once),
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+fn reading(folder: &Path, rounds: usize) -> Result<(), String> {
+    let path = folder.join("lines.nc");
+    let bytes = std::fs::metadata(&path).map_err(|error| error.to_string())?.len() as f64;
+    for (label, step) in [("P9 words", "lex"), ("P10 tree", "tree")] {
+        let costs: Result<Vec<_>, _> = (0..rounds).map(|_| own(step, &path)).collect();
+        let cost = median(&costs?);
+        let share = (cost.memory_mib * 1_048_576.0) / bytes;
+        println!("{label:16} {:8.3} s  {:6.0} MB/s  {share:5.2} x the source in memory", cost.cpu_s, bytes / cost.cpu_s / 1e6);
+    }
+    Ok(())
+}
+
+fn median(costs: &[Cost]) -> Cost {
+    let mut sorted = costs.to_vec();
+    sorted.sort_by(|a, b| a.cpu_s.total_cmp(&b.cpu_s));
+    let memory_mib = costs.iter().map(|cost| cost.memory_mib).fold(0.0, f64::max);
+    Cost { memory_mib, ..sorted[sorted.len() / 2] }
+}
+
+fn own(step: &str, file: &Path) -> Result<Cost, String> {
+    let program = std::env::current_exe().map_err(|error| error.to_string())?;
+    let mut command = Command::new(program);
+    command.arg(step).arg(file);
+    measure(command)
+}
+
+/// LinuxCNC's stand-alone interpreter.
+struct Peer {
+    silence: Option<PathBuf>,
+    home: PathBuf,
+}
+
+impl Peer {
+    fn find(folder: &Path) -> Option<Self> {
+        Command::new("rs274").arg("-h").stdout(Stdio::null()).stderr(Stdio::null()).status().ok()?;
+        let library = folder.join("silence.so");
+        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("silence.c");
+        let built = Command::new("cc").args(["-O2", "-w", "-shared", "-fPIC"]).arg(&source).arg("-o").arg(&library).status();
+        let silence = built.is_ok_and(|status| status.success()).then_some(library);
+        Some(Self { silence, home: folder.to_path_buf() })
+    }
+
+    fn run(&self, file: &Path, silent: bool) -> Result<Cost, String> {
+        let mut command = Command::new("rs274");
+        command.arg("-g").arg(file).env("HOME", &self.home);
+        if let Some(library) = self.silence.as_ref().filter(|_| silent) {
+            command.env("LD_PRELOAD", library);
+        }
+        measure(command)
+    }
+}
+
+/// Runs a command through `time`, which is everywhere and reports processor time and peak memory.
+fn measure(command: Command) -> Result<Cost, String> {
+    // A shell's `times` has no memory; /proc of a child is gone when it ended. Python's `resource` has both.
+    const SCRIPT: &str = "import os,sys,resource,subprocess\n\
+        r=subprocess.run(sys.argv[1:],stdout=subprocess.DEVNULL,stderr=subprocess.DEVNULL,stdin=subprocess.DEVNULL)\n\
+        u=resource.getrusage(resource.RUSAGE_CHILDREN)\n\
+        print(u.ru_utime+u.ru_stime,u.ru_maxrss,r.returncode)";
+    let mut wrapped = Command::new("python3");
+    wrapped.arg("-c").arg(SCRIPT).arg(command.get_program()).args(command.get_args());
+    for (name, value) in command.get_envs() {
+        if name != "LD_PRELOAD" {
+            wrapped.env(name, value.unwrap_or_default());
+        }
+    }
+    // The wrapper itself must print: the library is set for the child only.
+    if let Some((_, Some(library))) = command.get_envs().find(|(name, _)| *name == "LD_PRELOAD") {
+        wrapped = Command::new("python3");
+        let script = SCRIPT.replace("sys.argv[1:],", "sys.argv[2:],env=dict(os.environ,LD_PRELOAD=sys.argv[1]),");
+        wrapped.arg("-c").arg(script).arg(library).arg(command.get_program()).args(command.get_args());
+        if let Some((_, Some(home))) = command.get_envs().find(|(name, _)| *name == "HOME") {
+            wrapped.env("HOME", home);
+        }
+    }
+    let output = wrapped.output().map_err(|error| format!("python3: {error}"))?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let numbers: Vec<f64> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    match numbers.as_slice() {
+        [cpu_s, kib, code] if *code == 0.0 || command.get_program() == "rs274" => {
+            Ok(Cost { cpu_s: *cpu_s, memory_mib: kib / 1024.0 })
+        }
+        _ => Err(format!("{command:?} failed: {text} {}", String::from_utf8_lossy(&output.stderr))),
+    }
+}

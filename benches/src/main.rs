@@ -1,0 +1,162 @@
+//! Speed and memory, measured: reading, interpreting, listing, and the same motion in LinuxCNC's interpreter.
+//!
+//! `cargo run --release -p turnwright-benches -- compare` makes the programs, runs both sides in turn and prints
+//! ratios (goals: P1 G1 blocks, P3 numbered blocks, P4 arcs, P8 listing, S1 memory, S2 growth). `rs274` is run
+//! as a separate program when it is installed; without it only our own figures are printed.
+//! `generate DIR [BLOCKS]`, `lex FILE`, `tree FILE`, `interpret FILE`, `listing FILE` do single steps.
+
+mod compare;
+mod generate;
+
+use std::fs::File;
+use std::os::unix::fs::FileExt;
+use std::path::Path;
+use std::process::ExitCode;
+
+use turnwright_canon::{Action, Shape};
+use turnwright_control::{Control, Setup};
+use turnwright_diagnostics::SourceId;
+use turnwright_export::formats::jsonl;
+use turnwright_geometry::{Point, sweep_rad};
+use turnwright_interpreter::{Environment, Interpreter, Options, ReadFault, Step};
+use turnwright_syntax::{Block, Tree, find_line_end, scan_block};
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let result = match words.as_slice() {
+        ["generate", folder] => generate::all(Path::new(folder), 1_000_000),
+        ["generate", folder, blocks] => match blocks.parse() {
+            Ok(blocks) => generate::all(Path::new(folder), blocks),
+            Err(_) => Err(format!("{blocks} is no number of blocks")),
+        },
+        ["lex", file] => lex(Path::new(file)),
+        ["tree", file] => tree(Path::new(file)),
+        ["interpret", file] => interpret(Path::new(file)),
+        ["listing", file] => listing(Path::new(file)),
+        ["compare"] => compare::run(1_000_000, 5),
+        ["compare", blocks] => compare::run(blocks.parse().unwrap_or(1_000_000), 5),
+        _ => Err("usage: compare [BLOCKS] | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE".to_string()),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+struct Texts(File);
+
+impl Environment for Texts {
+    fn read(&mut self, _: SourceId, offset: u64, buffer: &mut [u8]) -> Result<usize, ReadFault> {
+        self.0.read_at(buffer, offset).map_err(|_| ReadFault)
+    }
+
+    fn skips(&self, _: u8) -> bool {
+        false
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, String> {
+    std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// Scans every block of a file into one reused block.
+fn lex(path: &Path) -> Result<(), String> {
+    let text = read(path)?;
+    let mut block = Block::new();
+    let (mut at, mut words, mut sum) = (0, 0u64, 0i64);
+    while at < text.len() {
+        let rest = &text[at..];
+        let (end, next) = find_line_end(rest, true).map_or((rest.len(), rest.len()), |end| (end.start, end.next));
+        scan_block(&rest[..end], 0, &mut block);
+        words += block.words.len() as u64;
+        for word in &block.words {
+            if let turnwright_syntax::Value::Number(number) = word.value {
+                sum = sum.wrapping_add(number.digits);
+            }
+        }
+        at += next;
+    }
+    println!("{words} words, check sum {sum}");
+    Ok(())
+}
+
+/// Builds the lossless tree of a file.
+fn tree(path: &Path) -> Result<(), String> {
+    let text = read(path)?;
+    let bytes = text.len();
+    let tree = Tree::parse(text);
+    println!("{} tokens, {:.2} x the source", tree.tokens().count(), tree.memory_bytes() as f64 / bytes as f64);
+    Ok(())
+}
+
+/// Radius programming is not a lathe control's way: the generated programs have doubled X words.
+fn interpreter(path: &Path) -> Result<(Interpreter, Texts), String> {
+    let mut control = Control::load("fanuc-0i-tf").map_err(|fault| format!("{fault:?}"))?;
+    // Four decimals are typed: IS-C keeps them.
+    control.parameters.set("1013#1", "1").map_err(|fault| format!("{fault:?}"))?;
+    let options = Options::default();
+    let interpreter = Interpreter::new(control, &Setup::default(), SourceId(0), options)
+        .map_err(|fault| fault.message)?;
+    let file = File::open(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    Ok((interpreter, Texts(file)))
+}
+
+/// Interprets a file and adds up what came out.
+fn interpret(path: &Path) -> Result<(), String> {
+    let (mut interpreter, mut texts) = interpreter(path)?;
+    let mut from = Point::new(interpreter.position().x.to_mm(), interpreter.position().z.to_mm());
+    let (mut moves, mut length_mm) = (0u64, 0.0f64);
+    loop {
+        match interpreter.step(&mut texts) {
+            Step::Emit(command) => {
+                let Some(to) = command.action.end_point() else { continue };
+                let to = Point::new(to.x.to_mm(), to.z.to_mm());
+                if moves > 0 {
+                    length_mm += match command.action {
+                        Action::Feed { shape: Shape::Arc { turn, centre }, .. } => {
+                            let centre = Point::new(centre.x.to_mm(), centre.z.to_mm());
+                            let clockwise = turn == turnwright_canon::Turn::Clockwise;
+                            sweep_rad(from, to, centre, clockwise).abs() * centre.distance(from)
+                        }
+                        _ => from.distance(to),
+                    };
+                }
+                moves += 1;
+                from = to;
+            }
+            Step::NeedSync(_) => {}
+            Step::Alarm(alarm) => return Err(format!("alarm {} at {:?}", alarm.key, alarm.place)),
+            Step::End => break,
+        }
+    }
+    println!("{moves} moves, {length_mm:.4} mm");
+    Ok(())
+}
+
+/// Interprets a file and writes the trace to nowhere.
+fn listing(path: &Path) -> Result<(), String> {
+    use std::io::Write;
+    let (mut interpreter, mut texts) = interpreter(path)?;
+    let decimals = interpreter.decimals();
+    let mut out = Vec::with_capacity(1 << 17);
+    let mut sink = File::create("/dev/null").map_err(|error| error.to_string())?;
+    loop {
+        match interpreter.step(&mut texts) {
+            Step::Emit(command) => {
+                jsonl::write_command(&mut out, &command, decimals);
+                if out.len() > 1 << 16 {
+                    sink.write_all(&out).map_err(|error| error.to_string())?;
+                    out.clear();
+                }
+            }
+            Step::NeedSync(_) => {}
+            Step::Alarm(alarm) => return Err(format!("alarm {} at {:?}", alarm.key, alarm.place)),
+            Step::End => break,
+        }
+    }
+    Ok(())
+}

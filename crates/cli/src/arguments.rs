@@ -1,0 +1,312 @@
+//! Commands and options.
+
+use std::path::PathBuf;
+
+use clap::builder::styling::{AnsiColor, Styles};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+
+/// Yellow headings and green literals, as the tools beside it have them.
+const STYLES: Styles = Styles::styled()
+    .header(AnsiColor::Yellow.on_default().bold())
+    .usage(AnsiColor::Yellow.on_default().bold())
+    .literal(AnsiColor::Green.on_default());
+
+const STATUS_HELP: &str = "\
+Exit status:
+  0  no alarm and no error (warnings may be there; --deny warnings makes them errors)
+  1  an alarm or an error was found
+  2  wrong usage, or a file could not be read or written
+
+A simulator is not a safety device: prove every program on the machine.";
+
+/// Runs turning-centre NC programs as the control would, before the chuck turns.
+#[derive(Debug, Parser)]
+#[command(name = "turnwright", version, styles = STYLES, propagate_version = true, after_long_help = STATUS_HELP)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    pub(crate) presentation: Presentation,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// How things are said.
+#[derive(Debug, Args)]
+pub(crate) struct Presentation {
+    /// Language of messages and reports [default: from LC_ALL, LC_MESSAGES or LANG]
+    #[arg(long, global = true, value_enum, value_name = "LANG")]
+    pub(crate) lang: Option<Lang>,
+    /// Colours on the terminal; auto honours NO_COLOR
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = Colour::Auto)]
+    pub(crate) color: Colour,
+}
+
+/// A language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Lang {
+    /// English
+    En,
+    /// 中文
+    Zh,
+}
+
+/// When to colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Colour {
+    /// On a terminal, unless NO_COLOR is set
+    Auto,
+    /// Even into a file or a pipe
+    Always,
+    /// Not at all
+    Never,
+}
+
+/// What is to be done.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    Run(Run),
+    Check(Check),
+    Trace(Trace),
+    Plot(Plot),
+    Explain(Explain),
+    Controls(Controls),
+    Completions(Completions),
+    Man(Man),
+}
+
+/// Which control and setup a program meets, and the switches of the machine.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Machine {
+    /// Control to run as [default: the program's own (CONTROL name), else the setup file's, else fanuc-0i-tf]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) control: Option<String>,
+    /// Setup file: machine, offsets, parameters [default: the program's name with .toml, beside it]
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) setup: Option<PathBuf>,
+    /// Sets a parameter of the control, for example 5130=10 or 3401#0=1; may be repeated
+    #[arg(long = "param", value_name = "NO[#BIT]=VALUE", value_parser = assignment)]
+    pub(crate) parameters: Vec<(String, String)>,
+    /// Block skip switches that are on, 1 to 9: blocks with /1 … /9 are passed over (/ is /1)
+    #[arg(long, value_name = "1,3", value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=9))]
+    pub(crate) skip: Vec<u8>,
+    /// M01 stops
+    #[arg(long)]
+    pub(crate) optional_stop: bool,
+    /// Treats warnings as errors
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub(crate) deny: Option<Deny>,
+    /// Blocks executed before the run is stopped
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) max_blocks: Option<u64>,
+}
+
+/// What is not tolerated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Deny {
+    /// Warnings count as errors
+    Warnings,
+}
+
+/// The form of diagnostics and reports.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// For people
+    #[default]
+    Human,
+    /// For scripts
+    Json,
+    /// SARIF 2.1.0, for code review tools
+    Sarif,
+}
+
+/// The form of what is looked up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LookupFormat {
+    /// For people
+    #[default]
+    Human,
+    /// For scripts
+    Json,
+}
+
+/// The form of a trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TraceFormat {
+    /// One JSON object a line; the default unless the output is a terminal
+    #[value(alias = "json")]
+    Jsonl,
+    /// The listing alone
+    Text,
+    /// The listing with line numbers; the default on a terminal
+    Human,
+}
+
+/// Runs a program and reports alarms, warnings, tools, extents and time.
+///
+/// The program runs as on the control: cycles, corners, feeds and all. With --out the report, the picture and
+/// the trace are written into a folder.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  turnwright run O0001.nc
+  turnwright run O0001.nc --out report            report.html, path.svg, path.png, trace.jsonl
+  turnwright run O0001.nc --control gsk-980tdi --param 051=500
+  turnwright run O0001.nc --format json")]
+pub(crate) struct Run {
+    /// The program; - for standard input
+    pub(crate) file: PathBuf,
+    /// Folder for the report, the picture and the trace; made when it does not exist
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Form of the report
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) machine: Machine,
+}
+
+/// Reports alarms and warnings of programs.
+///
+/// Folders are searched for .nc .cnc .tap .txt .mpf .ngc .min .prg .iso and files named O and a number. Files
+/// are checked in parallel, the output keeps their order.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  turnwright check O0001.nc
+  turnwright check programs/ --deny warnings
+  turnwright check programs/ --format json | jq -r .id | sort | uniq -c
+  turnwright check O0001.nc --format sarif > check.sarif")]
+pub(crate) struct Check {
+    /// Programs and folders; - for standard input
+    #[arg(required = true, value_name = "FILE")]
+    pub(crate) files: Vec<PathBuf>,
+    /// The control's own alarms and nothing more
+    #[arg(long, conflicts_with = "deny")]
+    pub(crate) alarms_only: bool,
+    /// Form of the diagnostics
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) machine: Machine,
+}
+
+/// Prints every move and action of a program, one a line.
+///
+/// Lengths are millimetres, X is a diameter. An alarm is the last line.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  turnwright trace O0001.nc
+  turnwright trace O0001.nc --format text > expected.txt
+  turnwright trace O0001.nc | jq -c 'select(.cycle == \"G71\" and .phase == \"cut\") | [.pass, .x, .z]'")]
+pub(crate) struct Trace {
+    /// The program; - for standard input
+    pub(crate) file: PathBuf,
+    /// Form of the trace
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub(crate) format: Option<TraceFormat>,
+    #[command(flatten)]
+    pub(crate) machine: Machine,
+}
+
+/// Draws the tool path of a program.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  turnwright plot O0001.nc -o path.svg
+  turnwright plot O0001.nc -o path.png --lang zh")]
+pub(crate) struct Plot {
+    /// The program; - for standard input
+    pub(crate) file: PathBuf,
+    /// The picture: a name that ends in .svg or .png
+    #[arg(short, long, value_name = "OUT.svg|OUT.png", value_parser = picture_name)]
+    pub(crate) output: PathBuf,
+    /// Form of the diagnostics
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) machine: Machine,
+}
+
+/// Says what a G or M code, an alarm or a parameter means.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  turnwright explain G71
+  turnwright explain PS0062
+  turnwright explain 062 --control fanuc-0i-mate-tb
+  turnwright explain 3401#0
+  turnwright explain cut-depth-illegal --lang zh")]
+pub(crate) struct Explain {
+    /// G71, M03, PS0062, 062, cut-depth-illegal, 5130, 3401#0 …
+    pub(crate) code: String,
+    /// Control that is asked [default: fanuc-0i-tf]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) control: Option<String>,
+    /// Form of the answer
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub(crate) format: LookupFormat,
+}
+
+/// Lists the controls and what differs between them.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  turnwright controls
+  turnwright controls gsk-980tdi
+  turnwright controls --diff fanuc-0i-mate-tb fanuc-0i-tf")]
+pub(crate) struct Controls {
+    /// The control to show in full
+    #[arg(conflicts_with = "diff")]
+    pub(crate) name: Option<String>,
+    /// Shows only what differs between two controls
+    #[arg(long, num_args = 2, value_names = ["A", "B"])]
+    pub(crate) diff: Option<Vec<String>>,
+    /// Form of the answer
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub(crate) format: LookupFormat,
+}
+
+/// Prints a completion script for a shell.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  turnwright completions bash > ~/.local/share/bash-completion/completions/turnwright")]
+pub(crate) struct Completions {
+    /// The shell
+    #[arg(value_enum)]
+    pub(crate) shell: Shell,
+}
+
+/// Prints the manual page.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  turnwright man > turnwright.1 && man ./turnwright.1")]
+pub(crate) struct Man {
+    /// The command whose page is wanted [default: that of turnwright itself]
+    #[arg(value_parser = COMMAND_NAMES)]
+    pub(crate) command: Option<String>,
+}
+
+/// The commands that have a page.
+const COMMAND_NAMES: [&str; 8] = ["run", "check", "trace", "plot", "explain", "controls", "completions", "man"];
+
+fn picture_name(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_known = |end: &&str| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(end));
+    if ["svg", "png"].iter().any(|end| is_known(&end)) {
+        Ok(path)
+    } else {
+        Err("expected a name that ends in .svg or .png".to_string())
+    }
+}
+
+fn assignment(text: &str) -> Result<(String, String), String> {
+    let fault = || format!("expected NO=VALUE or NO#BIT=VALUE, for example 5130=10, not {text:?}");
+    let (number, value) = text.split_once('=').ok_or_else(fault)?;
+    if number.trim().is_empty() || value.trim().is_empty() {
+        return Err(fault());
+    }
+    Ok((number.trim().to_string(), value.trim().to_string()))
+}

@@ -1,0 +1,257 @@
+//! Program texts: files and standard input, read at any offset.
+//!
+//! Small files are held in memory, large ones are read where they lie, so that memory does not grow with the
+//! length of a program. Streams (standard input, pipes) are held in memory up to [`STREAM_BYTES_MAX`].
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use turnwright_diagnostics::{Diagnostic, SourceId};
+use turnwright_interpreter::{Environment, ReadFault};
+use turnwright_syntax::find_line_end;
+
+use crate::arguments::Machine;
+use crate::finding::Finding;
+
+/// Files up to this size are held in memory.
+const MEMORY_BYTES_MAX: u64 = 8 * 1024 * 1024;
+
+/// A stream cannot be read twice, so it is kept; longer ones are refused.
+const STREAM_BYTES_MAX: u64 = 256 * 1024 * 1024;
+
+/// Bytes of a line that are looked at to show it.
+const LINE_BYTES_MAX: usize = 64 * 1024;
+
+/// The name that stands for standard input.
+pub(crate) const STANDARD_INPUT: &str = "-";
+
+/// A program text.
+#[derive(Debug)]
+pub(crate) struct ProgramText {
+    /// Its name in messages.
+    pub(crate) name: String,
+    /// Its file, unless it is a stream.
+    pub(crate) path: Option<PathBuf>,
+    content: Content,
+}
+
+#[derive(Debug)]
+enum Content {
+    Memory(Vec<u8>),
+    File { file: File, bytes: u64 },
+}
+
+impl ProgramText {
+    /// Opens a text.
+    pub(crate) fn open(path: &Path) -> Result<Self, Finding> {
+        let name = path.display().to_string();
+        let fault = |error: &io::Error| unreadable(&name, error);
+        if path.as_os_str() == STANDARD_INPUT {
+            let content = Content::Memory(read_stream(&name, io::stdin().lock())?);
+            return Ok(Self { name, path: None, content });
+        }
+        let file = File::open(path).map_err(|error| fault(&error))?;
+        let metadata = file.metadata().map_err(|error| fault(&error))?;
+        if metadata.is_dir() {
+            return Err(Finding::new(&name, Diagnostic::error("file-is-a-directory")).failed());
+        }
+        let content = if !metadata.is_file() {
+            Content::Memory(read_stream(&name, file)?)
+        } else if metadata.len() <= MEMORY_BYTES_MAX {
+            let mut bytes = Vec::with_capacity(metadata.len() as usize + 1);
+            // One byte more shows a file that has grown since.
+            (&file).take(MEMORY_BYTES_MAX + 1).read_to_end(&mut bytes).map_err(|error| fault(&error))?;
+            Content::Memory(bytes)
+        } else {
+            Content::File { file, bytes: metadata.len() }
+        };
+        Ok(Self { name, path: Some(path.to_path_buf()), content })
+    }
+
+    /// Its length in bytes.
+    pub(crate) fn len(&self) -> u64 {
+        match &self.content {
+            Content::Memory(bytes) => bytes.len() as u64,
+            Content::File { bytes, .. } => *bytes,
+        }
+    }
+
+    /// Bytes from an offset on; 0 at the end.
+    pub(crate) fn read_at(&self, offset: u64, buffer: &mut [u8]) -> io::Result<usize> {
+        match &self.content {
+            Content::Memory(bytes) => {
+                let rest = usize::try_from(offset).ok().and_then(|offset| bytes.get(offset..)).unwrap_or(&[]);
+                let count = rest.len().min(buffer.len());
+                buffer[..count].copy_from_slice(&rest[..count]);
+                Ok(count)
+            }
+            Content::File { file, .. } => loop {
+                match read_file_at(file, offset, buffer) {
+                    Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                    result => return result,
+                }
+            },
+        }
+    }
+
+    /// The first bytes of the text, as many as a line may have.
+    pub(crate) fn head(&self) -> Vec<u8> {
+        let mut bytes = vec![0; LINE_BYTES_MAX];
+        let count = self.read_at(0, &mut bytes).unwrap_or(0);
+        bytes.truncate(count);
+        bytes
+    }
+
+    /// The bytes of the line that starts at an offset, without its end; the head of a very long one.
+    pub(crate) fn line_at(&self, offset: u64) -> Vec<u8> {
+        let mut bytes = vec![0; LINE_BYTES_MAX];
+        let mut length = 0;
+        while length < bytes.len() {
+            match self.read_at(offset + length as u64, &mut bytes[length..]) {
+                Ok(0) | Err(_) => break,
+                Ok(count) => {
+                    length += count;
+                    if find_line_end(&bytes[..length], false).is_some() {
+                        break;
+                    }
+                }
+            }
+        }
+        bytes.truncate(length);
+        let end = find_line_end(&bytes, true).map_or(bytes.len(), |end| end.start);
+        bytes.truncate(end);
+        bytes
+    }
+
+    /// Where a line (from 1) starts.
+    pub(crate) fn offset_of_line(&self, line: u32) -> Option<u64> {
+        let mut lines = Lines::new(self);
+        (1..line).try_for_each(|_| lines.next().map(|_| ()))?;
+        Some(lines.offset())
+    }
+
+    /// The lines from the first one on.
+    pub(crate) fn lines(&self) -> Lines<'_> {
+        Lines::new(self)
+    }
+}
+
+/// The lines of a text, one by one; a very long one gives its head.
+pub(crate) struct Lines<'a> {
+    text: &'a ProgramText,
+    window: Vec<u8>,
+    /// Offset of the window's first byte.
+    base: u64,
+    at: usize,
+    is_last: bool,
+}
+
+impl<'a> Lines<'a> {
+    fn new(text: &'a ProgramText) -> Self {
+        Self { text, window: Vec::new(), base: 0, at: 0, is_last: false }
+    }
+
+    /// Where the next line starts.
+    fn offset(&self) -> u64 {
+        self.base + self.at as u64
+    }
+
+    fn fill(&mut self) {
+        self.base += self.at as u64;
+        self.window.drain(..self.at);
+        self.at = 0;
+        let kept = self.window.len();
+        self.window.resize(kept + LINE_BYTES_MAX, 0);
+        let read = self.text.read_at(self.base + kept as u64, &mut self.window[kept..]).unwrap_or(0);
+        self.window.truncate(kept + read);
+        self.is_last = read == 0;
+    }
+}
+
+impl Iterator for Lines<'_> {
+    type Item = Vec<u8>;
+
+    fn next(&mut self) -> Option<Vec<u8>> {
+        let mut head: Option<Vec<u8>> = None;
+        loop {
+            let rest = &self.window[self.at..];
+            if let Some(end) = find_line_end(rest, self.is_last) {
+                let line = head.unwrap_or_else(|| rest[..end.start].to_vec());
+                self.at += end.next;
+                return Some(line);
+            }
+            if self.is_last {
+                let line = rest.to_vec();
+                self.at = self.window.len();
+                return head.or((!line.is_empty()).then_some(line));
+            }
+            if rest.len() > LINE_BYTES_MAX {
+                head = head.or_else(|| Some(rest[..LINE_BYTES_MAX].to_vec()));
+                // Half of a CR LF may be the last byte.
+                self.at = self.window.len() - 1;
+            }
+            self.fill();
+        }
+    }
+}
+
+#[cfg(unix)]
+fn read_file_at(file: &File, offset: u64, buffer: &mut [u8]) -> io::Result<usize> {
+    std::os::unix::fs::FileExt::read_at(file, buffer, offset)
+}
+
+#[cfg(not(unix))]
+fn read_file_at(mut file: &File, offset: u64, buffer: &mut [u8]) -> io::Result<usize> {
+    use std::io::Seek;
+    file.seek(io::SeekFrom::Start(offset))?;
+    file.read(buffer)
+}
+
+fn read_stream(name: &str, stream: impl Read) -> Result<Vec<u8>, Finding> {
+    let mut bytes = Vec::new();
+    stream.take(STREAM_BYTES_MAX + 1).read_to_end(&mut bytes).map_err(|error| unreadable(name, &error))?;
+    if bytes.len() as u64 > STREAM_BYTES_MAX {
+        let limit = format!("{} MiB", STREAM_BYTES_MAX / (1024 * 1024));
+        return Err(Finding::new(name, Diagnostic::error("file-too-large").with("limit", limit)).failed());
+    }
+    Ok(bytes)
+}
+
+/// A file that cannot be read, with the system's own words.
+pub(crate) fn unreadable(name: &str, error: &io::Error) -> Finding {
+    Finding::new(name, Diagnostic::error("file-unreadable")).failed().with_hint(error.to_string())
+}
+
+/// The world as the interpreter sees it: one text and the switches of the panel.
+#[derive(Debug)]
+pub(crate) struct Panel<'a> {
+    text: &'a ProgramText,
+    skips: [bool; 10],
+    stops_optionally: bool,
+}
+
+impl<'a> Panel<'a> {
+    /// The text and the switches of the command line.
+    pub(crate) fn new(text: &'a ProgramText, machine: &Machine) -> Self {
+        let mut skips = [false; 10];
+        for switch in &machine.skip {
+            skips[usize::from(*switch % 10)] = true;
+        }
+        Self { text, skips, stops_optionally: machine.optional_stop }
+    }
+}
+
+impl Environment for Panel<'_> {
+    fn read(&mut self, _source: SourceId, offset: u64, buffer: &mut [u8]) -> Result<usize, ReadFault> {
+        self.text.read_at(offset, buffer).map_err(|_| ReadFault)
+    }
+
+    fn skips(&self, switch: u8) -> bool {
+        self.skips.get(usize::from(switch)).copied().unwrap_or(false)
+    }
+
+    fn stops_optionally(&self) -> bool {
+        self.stops_optionally
+    }
+}

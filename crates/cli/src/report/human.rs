@@ -1,0 +1,116 @@
+//! The report of a run on a terminal.
+
+use super::{RunReport, TIME_PARTS, estimates, operation_name};
+use crate::render::clean;
+use crate::speech::Speech;
+use crate::table::{Side, Table, facts, heading};
+
+impl RunReport {
+    /// Which control, which setup and why: what stands before everything else.
+    pub(crate) fn head(&self, speech: Speech) -> String {
+        let label = |key: &str| speech.get(key).to_string();
+        let control = &self.session.control;
+        let reason = self.session.reason.text(speech);
+        let named = |what: &str| speech.fill("named", &[("name", what), ("why", &reason)]);
+        let mut rows = vec![(label("program"), clean(&self.file)), (label("control"), named(control.name))];
+        if let Some(setup) = self.setup_name() {
+            rows.push((label("setup"), clean(&setup)));
+        }
+        let key = if self.session.setup.machine.is_some() { "machine-named" } else { "machine-assumed" };
+        rows.push((label("machine"), speech.fill(key, &[("name", &clean(&self.machine.name))])));
+        facts(&rows) + "\n"
+    }
+
+    /// Operations, extents, speeds and time.
+    pub(crate) fn body(&self, speech: Speech) -> String {
+        let mut out = String::new();
+        if !self.measure.summary.operations().is_empty() {
+            out.push_str(&self.operations(speech));
+            out.push('\n');
+        }
+        out.push_str(&facts(&self.figures(speech)));
+        out.push('\n');
+        out.push_str(&heading(speech.get("estimated")));
+        out.push('\n');
+        for (_, sentence) in estimates(speech) {
+            out.push_str(&format!("  - {sentence}\n"));
+        }
+        if !self.written.is_empty() {
+            out.push_str(&format!("\n{}\n", heading(speech.get("written"))));
+            for file in &self.written {
+                out.push_str(&format!("  {}\n", clean(file)));
+            }
+        }
+        out
+    }
+
+    fn operations(&self, speech: Speech) -> String {
+        use Side::{Left, Right};
+        let mut table = Table::new(&[Right, Right, Left, Left, Right, Right, Right, Right, Right]);
+        let columns = ["number", "tool", "code", "operation", "lines", "passes", "cutting-mm", "rapid-mm", "time"];
+        table.row(columns.map(|key| speech.fill(&format!("column-{key}"), &[])));
+        for (index, operation) in self.measure.summary.operations().iter().enumerate() {
+            let lines = match (operation.first_line, operation.last_line) {
+                (first, last) if last <= first => first.to_string(),
+                (first, last) => format!("{first}-{last}"),
+            };
+            table.row([
+                (index + 1).to_string(),
+                operation.tool.map_or(String::new(), |tool| tool.to_string()),
+                operation.label.map_or(String::new(), |label| label.to_string()),
+                operation_name(operation, &self.session.control, speech),
+                lines,
+                if operation.passes > 0 { operation.passes.to_string() } else { String::new() },
+                format!("{:.1}", operation.cutting_mm),
+                format!("{:.1}", operation.rapid_mm),
+                speech.duration(operation.seconds),
+            ]);
+        }
+        let mut out = table.text(0, true);
+        if self.measure.summary.merged_operations() > 0 {
+            let more = self.measure.summary.merged_operations().to_string();
+            out.push_str(&speech.fill("more-operations", &[("n", &more)]));
+            out.push('\n');
+        }
+        out
+    }
+
+    fn figures(&self, speech: Speech) -> Vec<(String, String)> {
+        let label = |key: &str| speech.get(key).to_string();
+        let summary = &self.measure.summary;
+        let mut rows = Vec::new();
+        let cutting = match self.cutting_extents() {
+            Some([x, z]) => {
+                let values = [("x1", &x[0]), ("x2", &x[1]), ("z1", &z[0]), ("z2", &z[1])];
+                speech.fill("extents", &values.map(|(name, value)| (name, value.as_str())))
+            }
+            None => label("no-cutting"),
+        };
+        rows.push((label("cutting-extents"), cutting));
+        if let Some(rpm) = summary.rpm() {
+            rows.push((label("spindle"), rpm_text(rpm.min, rpm.max)));
+        }
+        let totals = self.measure.clock.totals();
+        let parts: Vec<String> = TIME_PARTS
+            .iter()
+            .filter(|(kind, _)| totals.seconds(*kind) > 0.0)
+            .map(|(kind, name)| format!("{} {}", speech.get(&format!("time-of-{name}")), speech.duration(totals.seconds(*kind))))
+            .collect();
+        let mut time = speech.duration(totals.total_s());
+        if !parts.is_empty() {
+            time = format!("{time}\n{}", parts.join(speech.get("list-comma")));
+        }
+        if self.measure.clock.unknown_feeds() > 0 {
+            let count = self.measure.clock.unknown_feeds().to_string();
+            time = format!("{time}\n{}", speech.fill("time-unknown", &[("n", &count)]));
+        }
+        rows.push((label("time"), time));
+        rows
+    }
+}
+
+/// A range of spindle speeds.
+pub(super) fn rpm_text(min: f64, max: f64) -> String {
+    let (min, max) = (min.round(), max.round());
+    if min < max { format!("{min:.0} … {max:.0} rpm") } else { format!("{max:.0} rpm") }
+}

@@ -1,0 +1,95 @@
+//! The report of a run for scripts: one JSON object.
+
+use serde_json::{Value, json};
+use turnwright_motion::OperationKind;
+
+use super::{RunReport, TIME_PARTS, estimates, operation_name};
+use crate::environment::ProgramText;
+use crate::speech::Speech;
+
+impl RunReport {
+    /// The same as the report for people.
+    pub(crate) fn json(&self, text: &ProgramText, speech: Speech) -> Value {
+        let diagnostics: Vec<Value> = self
+            .findings
+            .iter()
+            .map(|finding| {
+                finding.to_json(speech.messages(), speech.language, finding.spot(Some(text)).as_ref())
+            })
+            .collect();
+        let estimates: Vec<Value> =
+            estimates(speech).map(|(key, text)| json!({ "key": key, "text": text })).collect();
+        json!({
+            "turnwright": "run",
+            "version": 1,
+            "file": self.file,
+            "control": self.session.control.name,
+            "control_reason": { "key": self.session.reason.word(), "text": self.session.reason.text(speech) },
+            "setup": self.setup_name(),
+            "machine": self.machine.name,
+            "blocks": self.blocks,
+            "diagnostics": diagnostics,
+            "operations": self.operations_json(speech),
+            "cutting_extents": self.extents_json(),
+            "spindle_rpm": self.measure.summary.rpm().map(|rpm| json!({ "min": rpm.min, "max": rpm.max })),
+            "time": self.time_json(),
+            "estimates": estimates,
+            "files": self.written,
+        })
+    }
+
+    fn operations_json(&self, speech: Speech) -> Vec<Value> {
+        let operations = self.measure.summary.operations().iter().enumerate();
+        operations
+            .map(|(index, operation)| {
+                json!({
+                    "index": index + 1,
+                    "tool": operation.tool,
+                    "offset": operation.offset,
+                    "code": operation.label.map(|label| label.to_string()),
+                    "kind": kind_word(operation.kind),
+                    "name": operation_name(operation, &self.session.control, speech),
+                    "first_line": operation.first_line,
+                    "last_line": operation.last_line,
+                    "passes": operation.passes,
+                    "cutting_mm": operation.cutting_mm,
+                    "rapid_mm": operation.rapid_mm,
+                    "seconds": operation.seconds,
+                })
+            })
+            .collect()
+    }
+
+    /// X as diameters, millimetres.
+    fn extents_json(&self) -> Value {
+        let Some(extents) = self.measure.summary.cutting_extents() else { return Value::Null };
+        json!({
+            "x_min": extents.x_min.to_diameter().0.to_mm(),
+            "x_max": extents.x_max.to_diameter().0.to_mm(),
+            "z_min": extents.z_min.to_mm(),
+            "z_max": extents.z_max.to_mm(),
+        })
+    }
+
+    fn time_json(&self) -> Value {
+        let totals = self.measure.clock.totals();
+        let mut time = json!({
+            "total_s": totals.total_s(),
+            "moves_of_unknown_time": self.measure.clock.unknown_feeds(),
+        });
+        for (kind, name) in TIME_PARTS {
+            time[format!("{name}_s")] = json!(totals.seconds(kind));
+        }
+        time
+    }
+}
+
+const fn kind_word(kind: OperationKind) -> &'static str {
+    match kind {
+        OperationKind::Standing => "standing",
+        OperationKind::Positioning => "positioning",
+        OperationKind::Turning => "turning",
+        OperationKind::Drilling => "drilling",
+        OperationKind::Threading => "threading",
+    }
+}

@@ -1,0 +1,159 @@
+//! What a run was: gathered once, said in several forms.
+
+mod human;
+mod json;
+mod page;
+
+use turnwright_canon::Command;
+use turnwright_control::{CodeSystem, Control, Language, Machine};
+use turnwright_export::path::PathRecorder;
+use turnwright_motion::{Clock, Kind, MachineRates, Operation, OperationKind, Summary};
+use turnwright_units::{Length, Position, Rpm, WorkTip, write_millimetres};
+
+use crate::finding::Finding;
+use crate::session::Session;
+use crate::speech::Speech;
+
+/// Time, sums and, when wanted, the path of a program.
+#[derive(Debug)]
+pub(crate) struct Measure {
+    /// Seconds.
+    pub(crate) clock: Clock,
+    /// Operations and extents.
+    pub(crate) summary: Summary,
+    /// The path, for pictures.
+    pub(crate) path: Option<PathRecorder>,
+}
+
+impl Measure {
+    /// Nothing yet, the tool at `start`.
+    pub(crate) fn new(start: Position<WorkTip>, machine: &Machine, keeps_path: bool) -> Self {
+        let rates = rates(machine);
+        let path =
+            keeps_path.then(|| PathRecorder::new(start, rates.rapid_x_mm_per_min, rates.rapid_z_mm_per_min));
+        Self { clock: Clock::new(start, rates), summary: Summary::new(), path }
+    }
+
+    /// Adds a command; `from` is where the tool stood before when the coordinates may have changed under it.
+    #[inline]
+    pub(crate) fn add(&mut self, command: &Command, from: Option<Position<WorkTip>>) {
+        if let Some(from) = from
+            && from != self.clock.position()
+        {
+            self.clock.relocate(from);
+            if let Some(path) = &mut self.path {
+                path.place_tool(from);
+            }
+        }
+        let timing = self.clock.advance(command);
+        self.summary.add(command, &timing);
+        if let Some(path) = &mut self.path {
+            path.add(command, timing.seconds);
+        }
+    }
+}
+
+fn rates(machine: &Machine) -> MachineRates {
+    MachineRates {
+        rapid_x_mm_per_min: machine.rapid_x_mm_per_min,
+        rapid_z_mm_per_min: machine.rapid_z_mm_per_min,
+        cutting_max_mm_per_min: machine.cutting_max_mm_per_min,
+        tool_change_s: machine.tool_change_s,
+        spindle_ramp_rpm_per_s: machine.spindle_ramp_rpm_per_s,
+        auxiliary_s: machine.auxiliary_s,
+        rpm_max: (machine.rpm_max > 0).then_some(Rpm(machine.rpm_max)),
+        rpm_min_surface: machine.rpm_min_surface,
+    }
+}
+
+/// Everything there is to say about a run.
+#[derive(Debug)]
+pub(crate) struct RunReport {
+    /// Name of the program's file.
+    pub(crate) file: String,
+    /// Control and setup.
+    pub(crate) session: Session,
+    /// The machine's rates.
+    pub(crate) machine: Machine,
+    /// Everything found.
+    pub(crate) findings: Vec<Finding>,
+    /// Time, sums, path.
+    pub(crate) measure: Measure,
+    /// Decimal places of the least increment.
+    pub(crate) decimals: u8,
+    /// Blocks executed.
+    pub(crate) blocks: u64,
+    /// Files written.
+    pub(crate) written: Vec<String>,
+}
+
+/// The parts that the time is split into, and the keys of their names.
+const TIME_PARTS: [(Kind, &str); 7] = [
+    (Kind::Cutting, "cutting"),
+    (Kind::Threading, "threading"),
+    (Kind::Rapid, "rapid"),
+    (Kind::Dwell, "dwell"),
+    (Kind::ToolChange, "tool_change"),
+    (Kind::Spindle, "spindle"),
+    (Kind::Other, "other"),
+];
+
+impl RunReport {
+    fn millimetres(&self, length: Length) -> String {
+        let mut out = Vec::new();
+        write_millimetres(&mut out, length, self.decimals);
+        String::from_utf8_lossy(&out).into_owned()
+    }
+
+    /// X (as a diameter) and Z of the cutting moves: from, to.
+    fn cutting_extents(&self) -> Option<[[String; 2]; 2]> {
+        let extents = self.measure.summary.cutting_extents()?;
+        let mm = |length| self.millimetres(length);
+        Some([
+            [mm(extents.x_min.to_diameter().0), mm(extents.x_max.to_diameter().0)],
+            [mm(extents.z_min), mm(extents.z_max)],
+        ])
+    }
+
+    fn setup_name(&self) -> Option<String> {
+        self.session.setup_path.as_ref().map(|path| path.display().to_string())
+    }
+}
+
+/// What a machinist would call an operation.
+fn operation_name(operation: &Operation, control: &Control, speech: Speech) -> String {
+    let label = operation.label.map(|label| label.0);
+    let of_code = label.and_then(|code| speech.functions().by_code(code, code_system(control), control.name));
+    match (of_code, operation.kind) {
+        (Some((_, entry)), _) => entry.name(speech.language).to_string(),
+        (None, OperationKind::Standing) => speech.get("operation-standing").to_string(),
+        (None, OperationKind::Positioning) => speech.get("operation-positioning").to_string(),
+        (None, OperationKind::Turning) => speech.get("operation-turning").to_string(),
+        (None, OperationKind::Drilling) => speech.get("operation-drilling").to_string(),
+        (None, OperationKind::Threading) => speech.get("operation-threading").to_string(),
+    }
+}
+
+/// The code table that a control uses with its present parameters.
+pub(crate) fn code_system(control: &Control) -> CodeSystem {
+    if control.parameters.bit("g-code-system-c") {
+        CodeSystem::C
+    } else if control.parameters.bit("g-code-system-b") {
+        CodeSystem::B
+    } else {
+        CodeSystem::A
+    }
+}
+
+/// The language of pictures and reports.
+pub(crate) const fn picture_language(language: Language) -> turnwright_export::Language {
+    match language {
+        Language::English => turnwright_export::Language::English,
+        Language::Chinese => turnwright_export::Language::Chinese,
+    }
+}
+
+/// What the times rest on, sentence by sentence.
+fn estimates(speech: Speech) -> impl Iterator<Item = (&'static str, String)> {
+    turnwright_motion::ESTIMATES.iter().map(move |key| (*key, speech.fill(&format!("estimate-{key}"), &[])))
+}

@@ -1,0 +1,151 @@
+//! The report of a run as one page, in both languages.
+
+use turnwright_export::formats::html::{Fact, OperationRow, Report, ReportDiagnostic, write_html};
+use turnwright_export::path::PathRecorder;
+
+use super::human::rpm_text;
+use super::{RunReport, TIME_PARTS, estimates, operation_name, picture_language};
+use crate::environment::ProgramText;
+use crate::finding::{Finding, decode};
+use crate::speech::{BOTH, Speech};
+
+/// Lines of the program in the report.
+const REPORT_LINES_MAX: usize = 100_000;
+
+/// Bytes of the program in the report.
+const REPORT_BYTES_MAX: usize = 16 * 1024 * 1024;
+
+/// English and Chinese.
+const SPEECHES: [Speech; 2] = [Speech { language: BOTH[0] }, Speech { language: BOTH[1] }];
+
+impl RunReport {
+    /// The page.
+    pub(crate) fn page(&self, text: &ProgramText, path: &PathRecorder, speech: Speech) -> String {
+        let (program_lines, is_whole) = program_lines(text);
+        let mut facts = self.page_facts();
+        if !is_whole {
+            facts.push(fact("program", |speech| {
+                speech.fill("program-shown-in-part", &[("n", &program_lines.len().to_string())])
+            }));
+        }
+        let [estimated_note_en, estimated_note_zh] = SPEECHES.map(|speech| {
+            let sentences: Vec<String> = estimates(speech).map(|(_, sentence)| sentence).collect();
+            sentences.join(if speech.language == BOTH[0] { " " } else { "" })
+        });
+        let report = Report {
+            title: self.title(),
+            control: self.session.control.name.to_string(),
+            control_reason: self.session.reason.text(speech),
+            source: 0,
+            program_lines,
+            operations: self.page_operations(),
+            diagnostics: self.findings.iter().map(|finding| page_diagnostic(finding, text)).collect(),
+            facts,
+            estimated_note_en,
+            estimated_note_zh,
+            language: picture_language(speech.language),
+        };
+        write_html(path, &report)
+    }
+
+    /// The file's name without its folders.
+    pub(crate) fn title(&self) -> String {
+        std::path::Path::new(&self.file)
+            .file_name()
+            .map_or_else(|| self.file.clone(), |name| name.to_string_lossy().into_owned())
+    }
+
+    fn page_operations(&self) -> Vec<OperationRow> {
+        let operations = self.measure.summary.operations().iter().zip(1..);
+        operations
+            .map(|(operation, index)| {
+                let [name_en, name_zh] =
+                    SPEECHES.map(|speech| operation_name(operation, &self.session.control, speech));
+                OperationRow {
+                    index,
+                    tool: operation.tool,
+                    name_en,
+                    name_zh,
+                    code: operation.label.map_or(String::new(), |label| label.to_string()),
+                    first_line: operation.first_line,
+                    last_line: operation.last_line,
+                    passes: operation.passes,
+                    cutting_mm: operation.cutting_mm,
+                    rapid_mm: operation.rapid_mm,
+                    seconds: operation.seconds,
+                }
+            })
+            .collect()
+    }
+
+    fn page_facts(&self) -> Vec<Fact> {
+        let totals = self.measure.clock.totals();
+        let mut facts = vec![fact("machine", |_| self.machine.name.clone())];
+        if let Some(setup) = self.setup_name() {
+            facts.push(fact("setup", |_| setup.clone()));
+        }
+        if let Some([x, z]) = self.cutting_extents() {
+            facts.push(fact("extents-x", |_| format!("{} … {} mm", x[0], x[1])));
+            facts.push(fact("extents-z", |_| format!("{} … {} mm", z[0], z[1])));
+        }
+        if let Some(rpm) = self.measure.summary.rpm() {
+            facts.push(fact("spindle", |_| rpm_text(rpm.min, rpm.max)));
+        }
+        facts.push(fact("time-total", |_| clock_face(totals.total_s())));
+        for (kind, name) in TIME_PARTS {
+            if totals.seconds(kind) > 0.0 {
+                facts.push(fact(&format!("time-of-{name}"), |_| clock_face(totals.seconds(kind))));
+            }
+        }
+        facts
+    }
+}
+
+/// Minutes and seconds as every language writes them.
+fn clock_face(seconds: f64) -> String {
+    let tenths = (seconds * 10.0).round().max(0.0) as u64;
+    format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
+}
+
+/// A row whose value is the same in both languages; English where it is not.
+fn fact(key: &str, value: impl Fn(Speech) -> String) -> Fact {
+    let [label_en, label_zh] = SPEECHES.map(|speech| speech.fill(key, &[]));
+    Fact { label_en, label_zh, value: value(SPEECHES[0]) }
+}
+
+fn page_diagnostic(finding: &Finding, text: &ProgramText) -> ReportDiagnostic {
+    let messages = SPEECHES[0].messages();
+    let [english, chinese] = BOTH.map(|language| finding.words(messages, language));
+    let spot = finding.spot(Some(text));
+    let (line, column, end_column) = spot.map_or((0, 0, 0), |spot| {
+        (spot.line, spot.span.start as u32 + 1, spot.span.end as u32 + 1)
+    });
+    ReportDiagnostic {
+        severity: finding.diagnostic.severity,
+        id: finding.id(messages).to_string(),
+        key: finding.diagnostic.key.to_string(),
+        line,
+        column,
+        end_column,
+        message_en: english.message,
+        cause_en: english.cause,
+        remedy_en: english.remedy,
+        message_zh: chinese.message,
+        cause_zh: chinese.cause,
+        remedy_zh: chinese.remedy,
+    }
+}
+
+/// The program's lines as far as a page can hold them, and whether that is all.
+fn program_lines(text: &ProgramText) -> (Vec<String>, bool) {
+    let mut shown = Vec::new();
+    let mut bytes = 0;
+    for line in text.lines() {
+        bytes += line.len();
+        if shown.len() >= REPORT_LINES_MAX || bytes > REPORT_BYTES_MAX {
+            return (shown, false);
+        }
+        shown.push(decode(&line));
+    }
+    (shown, true)
+}

@@ -1,0 +1,285 @@
+//! Which control and setup a program meets, and why.
+//!
+//! The control is that of `--control`, else of the program's own comment `(CONTROL name)`, else of the setup
+//! file, else the default. Parameters come from the control, then the setup file, then `--param`.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use turnwright_control::{
+    Control, ControlFault, DEFAULT_CONTROL, Language, ParameterFault, Setup, SetupFault, control_names, nearest,
+};
+use turnwright_diagnostics::{Diagnostic, Place, SourceId};
+use turnwright_syntax::{LineEnd, find_line_end};
+
+use crate::arguments::Machine;
+use crate::environment::ProgramText;
+use crate::finding::{Finding, decode};
+use crate::speech::Speech;
+
+/// Lines at the head of a program in which a directive is looked for.
+const DIRECTIVE_LINES: u32 = 20;
+
+/// Setup files are written by hand; a larger one is none.
+const SETUP_BYTES_MAX: u64 = 4 * 1024 * 1024;
+
+/// Why a control was used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Reason {
+    /// `--control`.
+    Option,
+    /// The program says so in this line.
+    Directive(u32),
+    /// The setup file says so.
+    Setup,
+    /// Nobody said anything.
+    Default,
+}
+
+impl Reason {
+    /// The word of the JSON format.
+    pub(crate) const fn word(&self) -> &'static str {
+        match self {
+            Self::Option => "option",
+            Self::Directive(_) => "directive",
+            Self::Setup => "setup",
+            Self::Default => "default",
+        }
+    }
+
+    /// The reason in words.
+    pub(crate) fn text(&self, speech: Speech) -> String {
+        let line = if let Self::Directive(line) = self { line.to_string() } else { String::new() };
+        speech.fill(&format!("reason-{}", self.word()), &[("line", &line)])
+    }
+}
+
+/// What a program meets.
+#[derive(Clone, Debug)]
+pub(crate) struct Session {
+    /// The control, its parameters set.
+    pub(crate) control: Control,
+    /// Why this one.
+    pub(crate) reason: Reason,
+    /// The setup.
+    pub(crate) setup: Setup,
+    /// Its file, if there is one.
+    pub(crate) setup_path: Option<PathBuf>,
+    /// A comment that looks like a directive and is none.
+    pub(crate) warning: Option<Diagnostic>,
+}
+
+impl Session {
+    /// Chooses control and setup for a program.
+    pub(crate) fn choose(text: &ProgramText, options: &Machine, speech: Speech) -> Result<Self, Finding> {
+        let (setup, setup_path) = find_setup(text, options)?;
+        let mut warning = None;
+        let (mut control, reason) = if let Some(name) = &options.control {
+            (load_control(name, "", speech)?, Reason::Option)
+        } else {
+            match directive(text) {
+                Directive::Names(name, place) => (load_control(&name, &text.name, speech)?, Reason::Directive(place.line)),
+                Directive::Unknown(finding) => return Err(*finding),
+                Directive::None(odd) => {
+                    warning = odd;
+                    match (&setup.control, &setup_path) {
+                        (Some(name), Some(path)) => {
+                            (load_control(name, &path.display().to_string(), speech)?, Reason::Setup)
+                        }
+                        _ => (load_control(DEFAULT_CONTROL, "", speech)?, Reason::Default),
+                    }
+                }
+            }
+        };
+        for (number, value) in &setup.parameters {
+            let value = match value {
+                toml::Value::Boolean(bit) => u8::from(*bit).to_string(),
+                toml::Value::String(text) => text.clone(),
+                toml::Value::Integer(number) => number.to_string(),
+                toml::Value::Float(number) => number.to_string(),
+                // Refused below as no number.
+                other => other.type_str().to_string(),
+            };
+            let file = setup_path.as_ref().map_or(String::new(), |path| path.display().to_string());
+            set_parameter(&mut control, number, &value, &file, speech)?;
+        }
+        for (number, value) in &options.parameters {
+            set_parameter(&mut control, number, value, "", speech)?;
+        }
+        Ok(Self { control, reason, setup, setup_path, warning })
+    }
+
+    /// A setup whose machine or values make no sense.
+    pub(crate) fn setup_fault(&self, fault: &SetupFault) -> Finding {
+        invalid_setup(self.setup_path.as_deref().unwrap_or(Path::new("--setup")), fault)
+    }
+}
+
+/// Loads a control named by `file`, or on the command line when that is empty.
+pub(crate) fn load_control(name: &str, file: &str, speech: Speech) -> Result<Control, Finding> {
+    Control::load(name).map_err(|fault| match fault {
+        ControlFault::Unknown { name, nearest } => {
+            let known = control_names().join(", ");
+            let diagnostic = Diagnostic::error("unknown-control").with("name", name).with("expected", known);
+            hinted(Finding::new(file, diagnostic).failed(), nearest, speech)
+        }
+        ControlFault::Data(why) => Finding::new(file, Diagnostic::error("internal-error").with("value", why)),
+    })
+}
+
+fn hinted(finding: Finding, nearest: Option<&str>, speech: Speech) -> Finding {
+    match nearest {
+        Some(name) => finding.with_hint(speech.fill("did-you-mean", &[("name", name)])),
+        None => finding,
+    }
+}
+
+fn set_parameter(control: &mut Control, number: &str, value: &str, file: &str, speech: Speech) -> Result<(), Finding> {
+    control.parameters.set(number, value).map_err(|fault| match fault {
+        ParameterFault::Unknown { number, nearest } => {
+            let diagnostic = Diagnostic::error("unknown-parameter").with("parameter", number);
+            hinted(Finding::new(file, diagnostic).failed(), nearest.as_deref(), speech)
+        }
+        ParameterFault::Value { number, value, expected } => {
+            let expected = match speech.language {
+                Language::English => expected.to_string(),
+                Language::Chinese => speech.fill(&format!("expected-{}", expected.replace([' ', ','], "-")), &[]),
+            };
+            let diagnostic = Diagnostic::error("parameter-value-illegal")
+                .with("parameter", number)
+                .with("value", value)
+                .with("expected", expected);
+            Finding::new(file, diagnostic).failed()
+        }
+    })
+}
+
+/// The setup file that was named, or the one beside the program.
+fn find_setup(text: &ProgramText, options: &Machine) -> Result<(Setup, Option<PathBuf>), Finding> {
+    let path = match (&options.setup, &text.path) {
+        (Some(named), _) => named.clone(),
+        (None, Some(program)) => {
+            let beside = program.with_extension("toml");
+            if beside == *program || !beside.is_file() {
+                return Ok((Setup::default(), None));
+            }
+            beside
+        }
+        (None, None) => return Ok((Setup::default(), None)),
+    };
+    let name = path.display().to_string();
+    let unusable = |value: String| {
+        let diagnostic = Diagnostic::error("setup-invalid").with("name", name.as_str()).with("value", value);
+        Finding::new(name.as_str(), diagnostic).failed()
+    };
+    let content = match fs::metadata(&path) {
+        Ok(metadata) if metadata.len() > SETUP_BYTES_MAX => {
+            return Err(unusable(format!("> {} MiB", SETUP_BYTES_MAX >> 20)));
+        }
+        Ok(_) => fs::read_to_string(&path).map_err(|error| unusable(error.to_string()))?,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            let diagnostic = Diagnostic::error("setup-not-found").with("name", name.as_str());
+            return Err(Finding::new(name, diagnostic).failed());
+        }
+        Err(error) => return Err(unusable(error.to_string())),
+    };
+    let setup = Setup::parse(&content).map_err(|fault| invalid_setup(&path, &fault))?;
+    Ok((setup, Some(path)))
+}
+
+fn invalid_setup(path: &Path, fault: &SetupFault) -> Finding {
+    let name = path.display().to_string();
+    let diagnostic = Diagnostic::error("setup-invalid").with("name", name.as_str()).with("value", fault.message.as_str());
+    let place = Place { line: fault.line, line_offset: u64::MAX, column: 1, end_column: 1, source: SourceId(0) };
+    let diagnostic = if fault.line > 0 { diagnostic.at(place) } else { diagnostic };
+    Finding::new(name, diagnostic).failed()
+}
+
+/// What the head of a program says about its control.
+enum Directive {
+    /// A control that exists.
+    Names(String, Place),
+    /// Clearly a directive, with a name that does not exist.
+    Unknown(Box<Finding>),
+    /// Nothing, or only a comment that reminds of a directive.
+    None(Option<Diagnostic>),
+}
+
+fn directive(text: &ProgramText) -> Directive {
+    let mut odd = None;
+    let head = text.head();
+    let mut start = 0;
+    for line_number in 1..=DIRECTIVE_LINES {
+        let rest = &head[start..];
+        let end = find_line_end(rest, true).unwrap_or(LineEnd { start: rest.len(), next: rest.len() });
+        let place = |from: usize, to: usize| Place {
+            source: SourceId(0),
+            line: line_number,
+            line_offset: start as u64,
+            column: from as u32 + 1,
+            end_column: to as u32 + 1,
+        };
+        for (from, to, comment) in comments(&rest[..end.start]) {
+            let Some((keyword, name)) = split_directive(&comment) else { continue };
+            if Control::load(&name).is_ok() {
+                return Directive::Names(name, place(from, to));
+            }
+            let word = format!("({comment})");
+            let near = nearest(&name, control_names());
+            let diagnostic = |severity: fn(&'static str) -> Diagnostic| {
+                severity("directive-unknown").at(place(from, to)).with("word", word.clone())
+            };
+            let is_one_word = !name.contains(' ');
+            if near.is_some() || (keyword == "CONTROL" && is_one_word) {
+                let finding = Finding::new(text.name.as_str(), diagnostic(Diagnostic::error));
+                let known = near.map_or_else(|| control_names().join(", "), str::to_string);
+                return Directive::Unknown(Box::new(finding.with_hint(known)));
+            }
+            if keyword == "CONTROL" && odd.is_none() {
+                odd = Some(diagnostic(Diagnostic::warning));
+            }
+        }
+        start += end.next;
+    }
+    Directive::None(odd)
+}
+
+/// The comments of a line: first byte, first byte behind, and what is between the brackets.
+fn comments(line: &[u8]) -> Vec<(usize, usize, String)> {
+    let mut found = Vec::new();
+    let mut at = 0;
+    while let Some(open) = line[at..].iter().position(|byte| *byte == b'(') {
+        let from = at + open;
+        let Some(close) = line[from..].iter().position(|byte| *byte == b')') else { break };
+        found.push((from, from + close + 1, decode(&line[from + 1..from + close])));
+        at = from + close + 1;
+    }
+    found
+}
+
+/// Keyword and name of a comment such as `CONTROL fanuc-0i-tf`, `PROFILE: gsk-980tdi`.
+fn split_directive(comment: &str) -> Option<(&'static str, String)> {
+    let comment = comment.trim();
+    let keyword = ["CONTROL", "PROFILE"].into_iter().find(|keyword| {
+        comment.get(..keyword.len()).is_some_and(|head| head.eq_ignore_ascii_case(keyword))
+    })?;
+    let rest = &comment[keyword.len()..];
+    let name = rest.trim_start_matches([' ', '\t', ':', '=']);
+    (name.len() < rest.len() && !name.is_empty()).then(|| (keyword, name.trim().to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directives_are_read_in_any_case_and_other_comments_are_not() {
+        assert_eq!(split_directive("Control gsk-980tdi"), Some(("CONTROL", "gsk-980tdi".to_string())));
+        assert_eq!(split_directive(" PROFILE: X "), Some(("PROFILE", "X".to_string())));
+        assert_eq!(split_directive("CONTROLLED DRILL"), None);
+        assert_eq!(split_directive("CONTROL"), None);
+        let found = comments(b"O1 (A) (CONTROL B) (open");
+        assert_eq!(found, [(3, 6, "A".to_string()), (7, 18, "CONTROL B".to_string())]);
+    }
+}

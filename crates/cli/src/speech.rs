@@ -1,0 +1,136 @@
+//! The words of the user interface, in the language of the user.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use turnwright_control::{Functions, Language, Messages};
+
+use crate::arguments::Lang;
+
+/// `key → [English, Chinese]`, from `data/texts.toml`.
+static TEXTS: LazyLock<BTreeMap<String, [String; 2]>> = LazyLock::new(|| {
+    let table: BTreeMap<String, BTreeMap<String, String>> =
+        toml::from_str(include_str!("../../../data/texts.toml"))
+            .unwrap_or_else(|error| unreachable!("data/texts.toml is read by a test: {error}"));
+    table
+        .into_iter()
+        .map(|(key, mut words)| {
+            let texts = ["en", "zh"].map(|tag| words.remove(tag).unwrap_or_default());
+            (key, texts)
+        })
+        .collect()
+});
+
+static MESSAGES: LazyLock<Messages> = LazyLock::new(Messages::load);
+static FUNCTIONS: LazyLock<Functions> = LazyLock::new(Functions::load);
+
+/// Both languages, English first, as every table of texts has them.
+pub(crate) const BOTH: [Language; 2] = [Language::English, Language::Chinese];
+
+/// What can be said, in one language.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Speech {
+    /// The language.
+    pub(crate) language: Language,
+}
+
+impl Speech {
+    /// The language asked for, else that of the environment.
+    pub(crate) fn new(asked: Option<Lang>) -> Self {
+        let language = match asked {
+            Some(Lang::En) => Language::English,
+            Some(Lang::Zh) => Language::Chinese,
+            None => language_of_environment(),
+        };
+        Self { language }
+    }
+
+    /// A text; a missing one is shown by its key, so that nobody misses it.
+    pub(crate) fn get(self, key: &str) -> &str {
+        match TEXTS.get(key) {
+            Some([en, _]) if self.language == Language::English => en,
+            Some([_, zh]) => zh,
+            None => key,
+        }
+    }
+
+    /// A text with values in its braces.
+    pub(crate) fn fill(self, key: &str, values: &[(&str, &str)]) -> String {
+        values.iter().fold(self.get(key).to_string(), |text, (name, value)| {
+            text.replace(&format!("{{{name}}}"), value)
+        })
+    }
+
+    /// Diagnostics in words.
+    pub(crate) fn messages(self) -> &'static Messages {
+        &MESSAGES
+    }
+
+    /// The code table.
+    pub(crate) fn functions(self) -> &'static Functions {
+        &FUNCTIONS
+    }
+
+    /// Seconds as people say them.
+    pub(crate) fn duration(self, seconds: f64) -> String {
+        let tenths = (seconds * 10.0).round().max(0.0) as u64;
+        let rounded = (seconds.round().max(0.0)) as u64;
+        if tenths < 600 {
+            return self.fill("time-s", &[("s", &format!("{}.{}", tenths / 10, tenths % 10))]);
+        }
+        let (hours, minutes, rest) = (rounded / 3600, rounded / 60 % 60, rounded % 60);
+        if hours == 0 {
+            self.fill("time-min", &[("m", &minutes.to_string()), ("s", &rest.to_string())])
+        } else {
+            let values = [hours.to_string(), minutes.to_string(), rest.to_string()];
+            self.fill("time-h", &[("h", &values[0]), ("m", &values[1]), ("s", &values[2])])
+        }
+    }
+}
+
+fn language_of_environment() -> Language {
+    let set = ["LC_ALL", "LC_MESSAGES", "LANG"]
+        .into_iter()
+        .filter_map(std::env::var_os)
+        .find(|value| !value.is_empty())
+        .unwrap_or_default();
+    if set.to_string_lossy().to_ascii_lowercase().starts_with("zh") {
+        Language::Chinese
+    } else {
+        Language::English
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_text_exists_in_both_languages_with_the_same_places() {
+        let places = |text: &str| {
+            let mut names: Vec<String> =
+                text.split('{').skip(1).filter_map(|rest| rest.split_once('}')).map(|(n, _)| n.to_string()).collect();
+            names.sort();
+            names
+        };
+        for (key, [en, zh]) in TEXTS.iter() {
+            assert!(!en.is_empty() && !zh.is_empty(), "{key}");
+            assert_eq!(places(en), places(zh), "{key}");
+        }
+    }
+
+    #[test]
+    fn every_estimate_and_kind_has_a_sentence() {
+        for key in turnwright_motion::ESTIMATES {
+            assert!(TEXTS.contains_key(&format!("estimate-{key}")), "{key}");
+        }
+    }
+
+    #[test]
+    fn durations_read_well() {
+        let speech = Speech { language: Language::English };
+        let said = [0.04, 9.96, 59.94, 59.96, 60.4, 3599.6, 7322.0].map(|seconds| speech.duration(seconds));
+        let expected = ["0.0 s", "10.0 s", "59.9 s", "1 min 0 s", "1 min 0 s", "1 h 0 min 0 s", "2 h 2 min 2 s"];
+        assert_eq!(said, expected);
+    }
+}
