@@ -290,7 +290,8 @@ pub(crate) struct Man {
 }
 
 /// The commands that have a page.
-const COMMAND_NAMES: [&str; 8] = ["run", "check", "trace", "plot", "explain", "controls", "completions", "man"];
+const COMMAND_NAMES: [&str; 8] =
+    ["run", "check", "trace", "plot", "explain", "controls", "completions", "man"];
 
 fn picture_name(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);

@@ -13,6 +13,7 @@ use turnwright_syntax::find_line_end;
 
 use crate::arguments::Machine;
 use crate::finding::Finding;
+use crate::speech::Speech;
 
 /// Files up to this size are held in memory.
 const MEMORY_BYTES_MAX: u64 = 8 * 1024 * 1024;
@@ -44,11 +45,11 @@ enum Content {
 
 impl ProgramText {
     /// Opens a text.
-    pub(crate) fn open(path: &Path) -> Result<Self, Finding> {
+    pub(crate) fn open(path: &Path, speech: Speech) -> Result<Self, Finding> {
         let name = path.display().to_string();
-        let fault = |error: &io::Error| unreadable(&name, error);
+        let fault = |error: &io::Error| unreadable(&name, error, speech);
         if path.as_os_str() == STANDARD_INPUT {
-            let content = Content::Memory(read_stream(&name, io::stdin().lock())?);
+            let content = Content::Memory(read_stream(&name, io::stdin().lock(), speech)?);
             return Ok(Self { name, path: None, content });
         }
         let file = File::open(path).map_err(|error| fault(&error))?;
@@ -57,7 +58,7 @@ impl ProgramText {
             return Err(Finding::new(&name, Diagnostic::error("file-is-a-directory")).failed());
         }
         let content = if !metadata.is_file() {
-            Content::Memory(read_stream(&name, file)?)
+            Content::Memory(read_stream(&name, file, speech)?)
         } else if metadata.len() <= MEMORY_BYTES_MAX {
             let mut bytes = Vec::with_capacity(metadata.len() as usize + 1);
             // One byte more shows a file that has grown since.
@@ -208,9 +209,12 @@ fn read_file_at(mut file: &File, offset: u64, buffer: &mut [u8]) -> io::Result<u
     file.read(buffer)
 }
 
-fn read_stream(name: &str, stream: impl Read) -> Result<Vec<u8>, Finding> {
+fn read_stream(name: &str, stream: impl Read, speech: Speech) -> Result<Vec<u8>, Finding> {
     let mut bytes = Vec::new();
-    stream.take(STREAM_BYTES_MAX + 1).read_to_end(&mut bytes).map_err(|error| unreadable(name, &error))?;
+    stream
+        .take(STREAM_BYTES_MAX + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| unreadable(name, &error, speech))?;
     if bytes.len() as u64 > STREAM_BYTES_MAX {
         let limit = format!("{} MiB", STREAM_BYTES_MAX / (1024 * 1024));
         return Err(Finding::new(name, Diagnostic::error("file-too-large").with("limit", limit)).failed());
@@ -219,8 +223,8 @@ fn read_stream(name: &str, stream: impl Read) -> Result<Vec<u8>, Finding> {
 }
 
 /// A file that cannot be read, with the system's own words.
-pub(crate) fn unreadable(name: &str, error: &io::Error) -> Finding {
-    Finding::new(name, Diagnostic::error("file-unreadable")).failed().with_hint(error.to_string())
+pub(crate) fn unreadable(name: &str, error: &io::Error, speech: Speech) -> Finding {
+    Finding::new(name, Diagnostic::error("file-unreadable")).failed().with_hint(speech.system(error))
 }
 
 /// The world as the interpreter sees it: one text and the switches of the panel.

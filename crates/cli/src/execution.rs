@@ -19,6 +19,8 @@ pub(crate) struct Execution<'a> {
     denies_warnings: bool,
     alarm: Option<Diagnostic>,
     early: Option<Diagnostic>,
+    /// Number of the program that gave the last command.
+    program: Option<u32>,
     /// Where the tool stood before the step, and how many blocks had been run.
     before: (Position<WorkTip>, u64),
 }
@@ -37,6 +39,7 @@ impl<'a> Execution<'a> {
             denies_warnings: machine.deny == Some(Deny::Warnings),
             alarm: None,
             early: session.warning.clone(),
+            program: None,
             before,
         })
     }
@@ -47,7 +50,10 @@ impl<'a> Execution<'a> {
         self.before = (self.interpreter.position(), self.interpreter.blocks_run());
         loop {
             match self.interpreter.step(&mut self.panel) {
-                Step::Emit(command) => return Some(command),
+                Step::Emit(command) => {
+                    self.program = command.origin.program;
+                    return Some(command);
+                }
                 // Somebody presses cycle start.
                 Step::NeedSync(_) => {}
                 Step::Alarm(alarm) => {
@@ -67,6 +73,16 @@ impl<'a> Execution<'a> {
     /// Where the tool stood before the last command, when a block of its own gave that command.
     pub(crate) fn position_before(&self) -> Option<Position<WorkTip>> {
         (self.interpreter.blocks_run() != self.before.1).then_some(self.before.0)
+    }
+
+    /// Number of the program that gave the last command.
+    pub(crate) fn program(&self) -> Option<u32> {
+        self.program
+    }
+
+    /// The text of the program.
+    pub(crate) fn text(&self) -> &'a ProgramText {
+        self.text
     }
 
     /// The interpreter.
@@ -89,7 +105,9 @@ impl<'a> Execution<'a> {
     /// Everything found and not yet taken, in the order of the lines; the alarm is the last.
     pub(crate) fn findings(&mut self) -> Vec<Finding> {
         let mut findings = self.take_warnings();
-        findings.sort_by_key(|finding| finding.diagnostic.place.map_or((u32::MAX, 0), |place| (place.line, place.column)));
+        findings.sort_by_key(|finding| {
+            finding.diagnostic.place.map_or((u32::MAX, 0), |place| (place.line, place.column))
+        });
         findings.extend(self.alarm_finding());
         findings
     }
@@ -104,7 +122,8 @@ impl<'a> Execution<'a> {
             diagnostic.severity = Severity::Error;
         }
         let is_unreadable = diagnostic.key == "file-unreadable";
-        let finding = Finding::new(self.text.name.as_str(), diagnostic).with_ids(self.interpreter.control().alarm_ids);
+        let finding =
+            Finding::new(self.text.name.as_str(), diagnostic).with_ids(self.interpreter.control().alarm_ids);
         if is_unreadable { finding.failed() } else { finding }
     }
 }

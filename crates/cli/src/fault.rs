@@ -12,6 +12,7 @@ use crate::arguments::Arguments;
 use crate::commands;
 use crate::finding::Finding;
 use crate::render::Printer;
+use crate::speech::Speech;
 
 /// The exit status, from good to bad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -73,7 +74,7 @@ pub(crate) fn guarded(arguments: Arguments) -> Status {
         Ok(Ok(status)) => status,
         Ok(Err(Fault::Output(error))) if error.kind() == io::ErrorKind::BrokenPipe => Status::Clean,
         Ok(Err(Fault::Output(error))) => {
-            printer.finding(&unwritable("-", &error), None);
+            printer.finding(&unwritable("-", &error, printer.speech), None);
             Status::Failed
         }
         Ok(Err(Fault::Usage(why))) => {
@@ -101,7 +102,8 @@ pub(crate) fn caught<T>(action: impl FnOnce() -> T) -> Result<T, Finding> {
 }
 
 /// A file or stream that cannot be written.
-pub(crate) fn unwritable(name: &str, error: &io::Error) -> Finding {
-    let diagnostic = Diagnostic::error("output-unwritable").with("name", name).with("value", error.to_string());
+pub(crate) fn unwritable(name: &str, error: &io::Error, speech: Speech) -> Finding {
+    let value = speech.system(error);
+    let diagnostic = Diagnostic::error("output-unwritable").with("name", name).with("value", value);
     Finding::new("", diagnostic).failed()
 }

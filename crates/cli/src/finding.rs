@@ -74,7 +74,12 @@ impl Finding {
     }
 
     /// One line of JSON, with the fields of the contract in their order.
-    pub(crate) fn to_json_line(&self, messages: &Messages, language: Language, spot: Option<&Spot>) -> String {
+    pub(crate) fn to_json_line(
+        &self,
+        messages: &Messages,
+        language: Language,
+        spot: Option<&Spot>,
+    ) -> String {
         let fields = self.json_fields(messages, language, spot);
         let inner: Vec<String> = fields.iter().map(|(name, value)| format!("\"{name}\":{value}")).collect();
         format!("{{{}}}", inner.join(","))
@@ -82,12 +87,21 @@ impl Finding {
 
     /// The same as a value.
     pub(crate) fn to_json(&self, messages: &Messages, language: Language, spot: Option<&Spot>) -> Value {
-        self.json_fields(messages, language, spot).into_iter().map(|(name, value)| (name.to_string(), value)).collect()
+        self.json_fields(messages, language, spot)
+            .into_iter()
+            .map(|(name, value)| (name.to_string(), value))
+            .collect()
     }
 
-    fn json_fields(&self, messages: &Messages, language: Language, spot: Option<&Spot>) -> [(&'static str, Value); 11] {
+    fn json_fields(
+        &self,
+        messages: &Messages,
+        language: Language,
+        spot: Option<&Spot>,
+    ) -> [(&'static str, Value); 11] {
         let words = self.words(messages, language);
-        let (line, column, end_column) = spot.map_or((0, 0, 0), |spot| (spot.line, spot.column, spot.end_column));
+        let (line, column, end_column) =
+            spot.map_or((0, 0, 0), |spot| (spot.line, spot.column, spot.end_column));
         let trace: Vec<Value> = self
             .diagnostic
             .trace

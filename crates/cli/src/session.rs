@@ -8,7 +8,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use turnwright_control::{
-    Control, ControlFault, DEFAULT_CONTROL, Language, ParameterFault, Setup, SetupFault, control_names, nearest,
+    Control, ControlFault, DEFAULT_CONTROL, Language, ParameterFault, Setup, SetupFault, control_names,
+    nearest,
 };
 use turnwright_diagnostics::{Diagnostic, Place, SourceId};
 use turnwright_syntax::{LineEnd, find_line_end};
@@ -73,13 +74,15 @@ pub(crate) struct Session {
 impl Session {
     /// Chooses control and setup for a program.
     pub(crate) fn choose(text: &ProgramText, options: &Machine, speech: Speech) -> Result<Self, Finding> {
-        let (setup, setup_path) = find_setup(text, options)?;
+        let (setup, setup_path) = find_setup(text, options, speech)?;
         let mut warning = None;
         let (mut control, reason) = if let Some(name) = &options.control {
             (load_control(name, "", speech)?, Reason::Option)
         } else {
-            match directive(text) {
-                Directive::Names(name, place) => (load_control(&name, &text.name, speech)?, Reason::Directive(place.line)),
+            match directive(text, speech) {
+                Directive::Names(name, place) => {
+                    (load_control(&name, &text.name, speech)?, Reason::Directive(place.line))
+                }
                 Directive::Unknown(finding) => return Err(*finding),
                 Directive::None(odd) => {
                     warning = odd;
@@ -135,7 +138,13 @@ fn hinted(finding: Finding, nearest: Option<&str>, speech: Speech) -> Finding {
     }
 }
 
-fn set_parameter(control: &mut Control, number: &str, value: &str, file: &str, speech: Speech) -> Result<(), Finding> {
+fn set_parameter(
+    control: &mut Control,
+    number: &str,
+    value: &str,
+    file: &str,
+    speech: Speech,
+) -> Result<(), Finding> {
     control.parameters.set(number, value).map_err(|fault| match fault {
         ParameterFault::Unknown { number, nearest } => {
             let diagnostic = Diagnostic::error("unknown-parameter").with("parameter", number);
@@ -144,7 +153,9 @@ fn set_parameter(control: &mut Control, number: &str, value: &str, file: &str, s
         ParameterFault::Value { number, value, expected } => {
             let expected = match speech.language {
                 Language::English => expected.to_string(),
-                Language::Chinese => speech.fill(&format!("expected-{}", expected.replace([' ', ','], "-")), &[]),
+                Language::Chinese => {
+                    speech.fill(&format!("expected-{}", expected.replace([' ', ','], "-")), &[])
+                }
             };
             let diagnostic = Diagnostic::error("parameter-value-illegal")
                 .with("parameter", number)
@@ -156,7 +167,11 @@ fn set_parameter(control: &mut Control, number: &str, value: &str, file: &str, s
 }
 
 /// The setup file that was named, or the one beside the program.
-fn find_setup(text: &ProgramText, options: &Machine) -> Result<(Setup, Option<PathBuf>), Finding> {
+fn find_setup(
+    text: &ProgramText,
+    options: &Machine,
+    speech: Speech,
+) -> Result<(Setup, Option<PathBuf>), Finding> {
     let path = match (&options.setup, &text.path) {
         (Some(named), _) => named.clone(),
         (None, Some(program)) => {
@@ -177,12 +192,12 @@ fn find_setup(text: &ProgramText, options: &Machine) -> Result<(Setup, Option<Pa
         Ok(metadata) if metadata.len() > SETUP_BYTES_MAX => {
             return Err(unusable(format!("> {} MiB", SETUP_BYTES_MAX >> 20)));
         }
-        Ok(_) => fs::read_to_string(&path).map_err(|error| unusable(error.to_string()))?,
+        Ok(_) => fs::read_to_string(&path).map_err(|error| unusable(speech.system(&error)))?,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             let diagnostic = Diagnostic::error("setup-not-found").with("name", name.as_str());
             return Err(Finding::new(name, diagnostic).failed());
         }
-        Err(error) => return Err(unusable(error.to_string())),
+        Err(error) => return Err(unusable(speech.system(&error))),
     };
     let setup = Setup::parse(&content).map_err(|fault| invalid_setup(&path, &fault))?;
     Ok((setup, Some(path)))
@@ -190,8 +205,10 @@ fn find_setup(text: &ProgramText, options: &Machine) -> Result<(Setup, Option<Pa
 
 fn invalid_setup(path: &Path, fault: &SetupFault) -> Finding {
     let name = path.display().to_string();
-    let diagnostic = Diagnostic::error("setup-invalid").with("name", name.as_str()).with("value", fault.message.as_str());
-    let place = Place { line: fault.line, line_offset: u64::MAX, column: 1, end_column: 1, source: SourceId(0) };
+    let diagnostic =
+        Diagnostic::error("setup-invalid").with("name", name.as_str()).with("value", fault.message.as_str());
+    let place =
+        Place { line: fault.line, line_offset: u64::MAX, column: 1, end_column: 1, source: SourceId(0) };
     let diagnostic = if fault.line > 0 { diagnostic.at(place) } else { diagnostic };
     Finding::new(name, diagnostic).failed()
 }
@@ -206,7 +223,7 @@ enum Directive {
     None(Option<Diagnostic>),
 }
 
-fn directive(text: &ProgramText) -> Directive {
+fn directive(text: &ProgramText, speech: Speech) -> Directive {
     let mut odd = None;
     let head = text.head();
     let mut start = 0;
@@ -233,8 +250,11 @@ fn directive(text: &ProgramText) -> Directive {
             let is_one_word = !name.contains(' ');
             if near.is_some() || (keyword == "CONTROL" && is_one_word) {
                 let finding = Finding::new(text.name.as_str(), diagnostic(Diagnostic::error));
-                let known = near.map_or_else(|| control_names().join(", "), str::to_string);
-                return Directive::Unknown(Box::new(finding.with_hint(known)));
+                let hint = match near {
+                    Some(name) => speech.fill("did-you-mean", &[("name", name)]),
+                    None => control_names().join(", "),
+                };
+                return Directive::Unknown(Box::new(finding.with_hint(hint)));
             }
             if keyword == "CONTROL" && odd.is_none() {
                 odd = Some(diagnostic(Diagnostic::warning));

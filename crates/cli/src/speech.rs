@@ -1,6 +1,7 @@
 //! The words of the user interface, in the language of the user.
 
 use std::collections::BTreeMap;
+use std::io;
 use std::sync::LazyLock;
 
 use turnwright_control::{Functions, Language, Messages};
@@ -71,6 +72,20 @@ impl Speech {
         &FUNCTIONS
     }
 
+    /// What the system says about a file, in the user's language where the case is a common one.
+    pub(crate) fn system(self, error: &io::Error) -> String {
+        let key = match error.kind() {
+            io::ErrorKind::NotFound => "system-not-found",
+            io::ErrorKind::PermissionDenied => "system-permission-denied",
+            io::ErrorKind::IsADirectory => "system-is-a-directory",
+            io::ErrorKind::NotADirectory => "system-not-a-directory",
+            io::ErrorKind::StorageFull => "system-storage-full",
+            io::ErrorKind::ReadOnlyFilesystem => "system-read-only",
+            _ => return error.to_string(),
+        };
+        self.get(key).to_string()
+    }
+
     /// Seconds as people say them.
     pub(crate) fn duration(self, seconds: f64) -> String {
         let tenths = (seconds * 10.0).round().max(0.0) as u64;
@@ -108,8 +123,12 @@ mod tests {
     #[test]
     fn every_text_exists_in_both_languages_with_the_same_places() {
         let places = |text: &str| {
-            let mut names: Vec<String> =
-                text.split('{').skip(1).filter_map(|rest| rest.split_once('}')).map(|(n, _)| n.to_string()).collect();
+            let mut names: Vec<String> = text
+                .split('{')
+                .skip(1)
+                .filter_map(|rest| rest.split_once('}'))
+                .map(|(n, _)| n.to_string())
+                .collect();
             names.sort();
             names
         };
@@ -130,7 +149,8 @@ mod tests {
     fn durations_read_well() {
         let speech = Speech { language: Language::English };
         let said = [0.04, 9.96, 59.94, 59.96, 60.4, 3599.6, 7322.0].map(|seconds| speech.duration(seconds));
-        let expected = ["0.0 s", "10.0 s", "59.9 s", "1 min 0 s", "1 min 0 s", "1 h 0 min 0 s", "2 h 2 min 2 s"];
+        let expected =
+            ["0.0 s", "10.0 s", "59.9 s", "1 min 0 s", "1 min 0 s", "1 h 0 min 0 s", "2 h 2 min 2 s"];
         assert_eq!(said, expected);
     }
 }

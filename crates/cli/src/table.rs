@@ -32,7 +32,9 @@ impl Table {
     /// The rows, each indented and with a line end. The first row is the heading when `has_heading`.
     pub(crate) fn text(&self, indent: usize, has_heading: bool) -> String {
         let widths: Vec<usize> = (0..self.sides.len())
-            .map(|column| self.rows.iter().map(|row| row.get(column).map_or(0, |cell| cell.width())).max().unwrap_or(0))
+            .map(|column| {
+                self.rows.iter().map(|row| row.get(column).map_or(0, |cell| cell.width())).max().unwrap_or(0)
+            })
             .collect();
         let mut out = String::new();
         for (index, row) in self.rows.iter().enumerate() {

@@ -4,7 +4,7 @@
 //! not stop the program.
 
 use turnwright_canon::{Action, Coolant, SpindleState};
-use turnwright_syntax::{Block, Word};
+use turnwright_syntax::Block;
 
 use crate::machine::Core;
 use crate::report::Alarm;
@@ -24,10 +24,13 @@ pub(crate) enum Flow {
 pub(crate) struct Auxiliary {
     pub(crate) spindle: Option<SpindleState>,
     coolant: Option<Coolant>,
-    others: [Option<u32>; 3],
-    pub(crate) flow: Option<(Flow, Option<Word>)>,
+    /// Numbers of other M words; as many as `other_count`.
+    others: [u32; 3],
+    other_count: u8,
+    /// What directs the program, and its place among the words.
+    pub(crate) flow: Option<(Flow, u8)>,
     pub(crate) returns: bool,
-    first: Option<Word>,
+    first: u8,
     count: u8,
 }
 
@@ -49,7 +52,13 @@ mod code {
 
 impl Core {
     /// Takes an M word in; a second one counts only where the parameter allows several.
-    pub(crate) fn sort_auxiliary(&mut self, word: &Word, auxiliary: &mut Auxiliary) -> Result<(), Alarm> {
+    pub(crate) fn sort_auxiliary(
+        &mut self,
+        block: &Block,
+        place: usize,
+        auxiliary: &mut Auxiliary,
+    ) -> Result<(), Alarm> {
+        let word = &block.words[place];
         let number = self.whole(word, 99_999_999)?;
         let is_flow = matches!(
             number,
@@ -64,16 +73,17 @@ impl Core {
         if auxiliary.count > 0 {
             if !self.settings.several_auxiliary {
                 // The last one counts.
-                let first = auxiliary.first.unwrap_or(*word);
-                self.warn("auxiliary-overruled", &first);
+                self.warn("auxiliary-overruled", &block.words[usize::from(auxiliary.first)]);
                 *auxiliary = Auxiliary::default();
             } else if auxiliary.count >= 3 {
                 return Err(self.alarm("auxiliary-combination-illegal", word));
             }
         }
+        if auxiliary.count == 0 {
+            auxiliary.first = place as u8;
+        }
         auxiliary.count += 1;
-        auxiliary.first = auxiliary.first.or(Some(*word));
-        let flow = |flow| Some((flow, Some(*word)));
+        let flow = |flow| Some((flow, place as u8));
         match number {
             code::STOP => auxiliary.flow = flow(Flow::Stop),
             code::OPTIONAL_STOP => auxiliary.flow = flow(Flow::OptionalStop),
@@ -89,9 +99,8 @@ impl Core {
             code::MIST | code::COOLANT_ON => auxiliary.coolant = Some(Coolant::On),
             code::COOLANT_OFF => auxiliary.coolant = Some(Coolant::Off),
             other => {
-                if let Some(slot) = auxiliary.others.iter_mut().find(|slot| slot.is_none()) {
-                    *slot = Some(other);
-                }
+                auxiliary.others[usize::from(auxiliary.other_count)] = other;
+                auxiliary.other_count += 1;
             }
         }
         Ok(())
@@ -126,7 +135,7 @@ impl Auxiliary {
         if let Some(coolant) = self.coolant {
             core.emit(Action::Coolant(coolant));
         }
-        for code in self.others.iter().flatten() {
+        for code in &self.others[..usize::from(self.other_count)] {
             core.emit(Action::Auxiliary { code: *code });
         }
     }

@@ -38,13 +38,21 @@ const AXES: u32 = Block::bit(b'X') | Block::bit(b'Z') | Block::bit(b'U') | Block
 /// Most G words in a block.
 const CODES_MAX: usize = 16;
 
+/// A code of a block: its function, number times ten, and place among the words.
+#[derive(Clone, Copy)]
+struct Code {
+    id: FunctionId,
+    code: u16,
+    word: u8,
+}
+
 /// The codes of a block, sorted by what they do.
 #[derive(Default)]
 struct Codes {
-    modes: [Option<(FunctionId, Word)>; CODES_MAX],
+    modes: [(FunctionId, u8); CODES_MAX],
     mode_count: usize,
-    one_shot: Option<(FunctionId, u16, Word)>,
-    motion: Option<(FunctionId, u16, Word)>,
+    one_shot: Option<Code>,
+    motion: Option<Code>,
 }
 
 /// What reading the next block gave.
@@ -189,11 +197,12 @@ impl Core {
         self.has_started = true;
         let mut codes = Codes::default();
         let mut auxiliary = Auxiliary::default();
-        for word in &block.words {
+        for (place, word) in block.words.iter().enumerate() {
             match word.address {
+                b'X' | b'Z' | b'U' | b'W' | b'F' => {}
                 _ if word.comma => {}
-                b'G' => self.sort_code(word, &mut codes)?,
-                b'M' => self.sort_auxiliary(word, &mut auxiliary)?,
+                b'G' => self.sort_code(block, place, &mut codes)?,
+                b'M' => self.sort_auxiliary(block, place, &mut auxiliary)?,
                 b'N' => self.sequence_number(word)?,
                 b'O' => self.program_number(word, &auxiliary)?,
                 _ => {}
@@ -203,14 +212,14 @@ impl Core {
         if self.is_over {
             return Ok(());
         }
-        for (id, word) in codes.modes.iter().take(codes.mode_count).flatten() {
-            self.run_mode(*id, word, block, environment)?;
+        for (id, word) in codes.modes.iter().take(codes.mode_count) {
+            self.run_mode(*id, &block.words[usize::from(*word)], block, environment)?;
         }
-        if let Some((id, code, _)) = codes.motion {
-            self.change_motion(id, code);
+        if let Some(motion) = codes.motion {
+            self.change_motion(motion.id, motion.code);
         }
         let motion = self.modal.motion;
-        let function = codes.one_shot.map_or(motion, |(id, ..)| id).get();
+        let function = codes.one_shot.map_or(motion, |one_shot| one_shot.id).get();
         self.check_letters(block, function, &auxiliary)?;
         if let Some(word) = block.word(b'F') {
             let per_revolution =
@@ -228,7 +237,8 @@ impl Core {
         let waiting_corner = self.corner.is_some();
         let call = |word, code, environment| Call { block, environment, code, word };
         match codes.one_shot {
-            Some((id, code, word)) => {
+            Some(Code { id, code, word }) => {
+                let word = block.words[usize::from(word)];
                 if waiting_corner && block.present() & AXES != 0 && !function.in_figure {
                     return Err(self.corner_without_next());
                 }
@@ -244,7 +254,7 @@ impl Core {
                     if waiting_corner && motion != FunctionId::LINEAR {
                         return Err(self.corner_without_next());
                     }
-                    let word = codes.motion.map(|(_, _, word)| word);
+                    let word = codes.motion.map(|motion| block.words[usize::from(motion.word)]);
                     function.run(self, &mut call(word, self.modal.motion_code, environment))?;
                 }
             }
@@ -252,36 +262,36 @@ impl Core {
         if waiting_corner && self.corner.as_mut().is_some_and(crate::corner::PendingCorner::waits_too_long) {
             return Err(self.corner_without_next());
         }
-        if auxiliary.has_flow() { self.flow(&auxiliary, block, environment) } else { Ok(()) }
+        if auxiliary.has_flow() { self.flow(auxiliary, block, environment) } else { Ok(()) }
     }
 
     #[inline]
-    fn sort_code(&mut self, word: &Word, codes: &mut Codes) -> Result<(), Alarm> {
+    fn sort_code(&mut self, block: &Block, place: usize, codes: &mut Codes) -> Result<(), Alarm> {
+        let word = &block.words[place];
         let code = self.code(word)?;
         let Some(id) = self.dispatch.function(code) else { return Err(self.refuse_code(code, word)) };
         let function = id.get();
         if !function.in_figure && self.is_in_figure() {
             return Err(self.refuse_in_figure(word));
         }
+        let new = Code { id, code, word: place as u8 };
         match function.kind {
             Kind::Mode(_) => {
                 if codes.mode_count == CODES_MAX {
                     return Err(self.alarm("too-many-words", word));
                 }
-                codes.modes[codes.mode_count] = Some((id, *word));
+                codes.modes[codes.mode_count] = (id, place as u8);
                 codes.mode_count += 1;
             }
             Kind::OneShot(_) => {
-                if let Some((_, _, first)) = codes.one_shot {
-                    self.same_group(&first, word)?;
+                if let Some(first) = codes.one_shot.replace(new) {
+                    self.same_group(block, first, word)?;
                 }
-                codes.one_shot = Some((id, code, *word));
             }
             Kind::Motion(_) => {
-                if let Some((_, _, first)) = codes.motion {
-                    self.same_group(&first, word)?;
+                if let Some(first) = codes.motion.replace(new) {
+                    self.same_group(block, first, word)?;
                 }
-                codes.motion = Some((id, code, *word));
             }
         }
         Ok(())
@@ -289,11 +299,11 @@ impl Core {
 
     /// Two codes of one group: the last counts, unless the parameter makes it an alarm.
     #[cold]
-    fn same_group(&mut self, first: &Word, word: &Word) -> Result<(), Alarm> {
+    fn same_group(&mut self, block: &Block, first: Code, word: &Word) -> Result<(), Alarm> {
         if self.settings.duplicate_word_alarm {
             return Err(self.alarm("duplicate-word", word));
         }
-        self.warn("same-group-codes", first);
+        self.warn("same-group-codes", &block.words[usize::from(first.word)]);
         Ok(())
     }
 
@@ -361,7 +371,7 @@ impl Core {
         if self.is_capturing() {
             return Ok(());
         }
-        let limits_speed = codes.one_shot.is_some_and(|(id, ..)| id.get().takes_speed_limit);
+        let limits_speed = codes.one_shot.is_some_and(|one_shot| one_shot.id.get().takes_speed_limit);
         if let Some(word) = block.word(b'S')
             && !limits_speed
         {

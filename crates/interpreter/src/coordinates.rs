@@ -114,35 +114,40 @@ impl Core {
         if block.present() & CROSS != 0 {
             let (word, is_increment) = self.axis_word(block, b'X', b'U')?;
             to.x = if is_increment {
-                from.x + self.radius(&word, Role::XIncrement)?
+                from.x + self.radius(word, Role::XIncrement)?
             } else {
-                self.radius(&word, Role::XCoordinate)?
+                self.radius(word, Role::XCoordinate)?
             };
-            self.missing_point(&word);
+            self.missing_point(word);
         }
         if block.present() & ALONG != 0 {
             let (word, is_increment) = self.axis_word(block, b'Z', b'W')?;
-            let length = self.length(&word)?;
+            let length = self.length(word)?;
             to.z = if is_increment { from.z + length } else { length };
-            self.missing_point(&word);
+            self.missing_point(word);
         }
         Ok(to)
     }
 
     /// The word that counts for an axis, and whether it is an increment.
     #[inline]
-    fn axis_word(&mut self, block: &Block, absolute: u8, increment: u8) -> Result<(Word, bool), Alarm> {
+    fn axis_word<'b>(
+        &mut self,
+        block: &'b Block,
+        absolute: u8,
+        increment: u8,
+    ) -> Result<(&'b Word, bool), Alarm> {
         let lists_increments = self.dispatch.has_incremental_words;
         match (block.word(absolute), block.word(increment)) {
-            (Some(word), None) => Ok((*word, self.modal.is_incremental)),
-            (None, Some(word)) if lists_increments => Ok((*word, true)),
+            (Some(word), None) => Ok((word, self.modal.is_incremental)),
+            (None, Some(word)) if lists_increments => Ok((word, true)),
             (Some(absolute), Some(increment)) if lists_increments => {
                 self.warn("absolute-and-increment-together", increment);
                 let later = match self.control.policies.axis_word_conflict {
                     AxisWordConflict::LaterWord => increment.start > absolute.start,
                     AxisWordConflict::AbsoluteWins => false,
                 };
-                Ok(if later { (*increment, true) } else { (*absolute, false) })
+                Ok(if later { (increment, true) } else { (absolute, false) })
             }
             (_, Some(word)) => Err(self.alarm("illegal-address", word)),
             (None, None) => Err(self.alarm_block("arc-endpoint-missing")),
@@ -180,8 +185,7 @@ impl Core {
     /// Refuses a place that the control cannot hold.
     #[inline]
     pub(crate) fn in_range(&self, to: Position<WorkTip>) -> Result<Position<WorkTip>, Alarm> {
-        let digits = u32::from(self.control.limits.number_digits.min(9));
-        let limit = 10i64.pow(digits) * self.settings.metric_increment.nm();
+        let limit = self.settings.length_limit_nm;
         if to.x.0.abs().nm() < limit && to.z.abs().nm() < limit { Ok(to) } else { Err(self.out_of_range(to)) }
     }
 

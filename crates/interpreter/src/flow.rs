@@ -85,11 +85,12 @@ impl Core {
     #[cold]
     pub(crate) fn flow(
         &mut self,
-        auxiliary: &Auxiliary,
+        auxiliary: Auxiliary,
         block: &Block,
         environment: &mut dyn Environment,
     ) -> Result<(), Alarm> {
-        let Some((flow, word)) = auxiliary.flow else { return Ok(()) };
+        let Some((flow, place)) = auxiliary.flow else { return Ok(()) };
+        let word = block.words.get(usize::from(place)).copied();
         if self.corner.is_some() {
             return Err(self.corner_without_next());
         }

@@ -120,6 +120,8 @@ pub(crate) struct Core {
     pub(crate) warnings: Vec<Diagnostic>,
     pub(crate) warnings_given: usize,
     pub(crate) said: HashSet<(&'static str, u32)>,
+    /// The warning about a standing spindle was given.
+    pub(crate) said_spindle_stands: bool,
 }
 
 /// Runs one program.
@@ -144,7 +146,7 @@ impl Interpreter {
     ) -> Result<Self, SetupFault> {
         let always =
             control.policies.decimal_rule == turnwright_control::policy::DecimalRule::AlwaysCalculator;
-        let settings = Settings::new(&control.parameters, always);
+        let settings = Settings::new(&control.parameters, always, control.limits.number_digits);
         let dispatch = Dispatch::new(&control);
         let zeros = Zeros::new(setup)?;
         let bit = |name| control.parameters.bit(name);
@@ -204,6 +206,7 @@ impl Interpreter {
             warnings: Vec::new(),
             warnings_given: 0,
             said: HashSet::new(),
+            said_spindle_stands: false,
         };
         core.start_at_reference();
         Ok(Self { core, block: Block::new(), alarm: None })

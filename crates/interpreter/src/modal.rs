@@ -73,6 +73,9 @@ impl Modal {
 pub(crate) struct Settings {
     pub(crate) metric_increment: LeastIncrement,
     pub(crate) inch_increment: LeastIncrement,
+    pub(crate) metric_decimals: u8,
+    /// Lengths reach to this, metric.
+    pub(crate) length_limit_nm: i64,
     pub(crate) is_calculator: bool,
     pub(crate) cycle_words_in_mm: bool,
     pub(crate) linear_rapid: bool,
@@ -107,7 +110,7 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
-    pub(crate) fn new(parameters: &Parameters, always_calculator: bool) -> Self {
+    pub(crate) fn new(parameters: &Parameters, always_calculator: bool, digits: u8) -> Self {
         let bit = |name| parameters.bit(name);
         let mm = |name: &str| Length::from_nm((parameters.value(name) * 1e6).round() as i64);
         let count = |name: &str| parameters.value(name).clamp(0.0, 1e9) as u32;
@@ -121,6 +124,8 @@ impl Settings {
         Self {
             metric_increment,
             inch_increment,
+            metric_decimals: metric_increment.metric_decimals(),
+            length_limit_nm: 10i64.pow(u32::from(digits.min(9))) * metric_increment.nm(),
             is_calculator: always_calculator || bit("decimal-point-input"),
             cycle_words_in_mm: bit("cycle-words-in-millimetres"),
             linear_rapid: bit("linear-rapid"),

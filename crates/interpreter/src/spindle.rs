@@ -68,8 +68,10 @@ impl Core {
     pub(crate) fn check_spindle(&mut self) {
         if self.modal.spindle == SpindleState::Stop
             && self.modal.feed_mode == crate::modal::FeedMode::PerRevolution
+            && !self.said_spindle_stands
             && !self.is_capturing()
         {
+            self.said_spindle_stands = true;
             self.warn_once("spindle-not-started-warning");
         }
     }

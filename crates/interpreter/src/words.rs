@@ -53,11 +53,18 @@ impl Core {
     pub(crate) fn length(&self, word: &Word) -> Result<Length, Alarm> {
         let number = self.number(word)?;
         let counts = !(number.has_point || self.settings.is_calculator);
+        // Nearly every word: metric, and no finer than the increment.
+        if !counts && !self.modal.is_inch && number.scale <= self.settings.metric_decimals {
+            let nm = number.digits.saturating_mul(POWER[usize::from(6 - number.scale)]);
+            if nm.abs() < self.settings.length_limit_nm {
+                return Ok(Length::from_nm(nm));
+            }
+        }
         self.length_of(word, number, counts)
     }
 
     /// `counts`: the number counts least increments.
-    #[inline]
+    #[cold]
     fn length_of(&self, word: &Word, number: Decimal, counts: bool) -> Result<Length, Alarm> {
         let increment = self.modal.increment(&self.settings).nm();
         let digits_max = POWER[usize::from(self.control.limits.number_digits.min(9))];
@@ -135,6 +142,9 @@ impl Core {
         if number.is_negative {
             return Err(self.alarm("minus-not-allowed", word));
         }
+        if number.scale == 0 && number.digits < 1_000 {
+            return Ok(number.digits as u16 * 10);
+        }
         match number.scaled(1) {
             Some((code, false)) if code < 10_000 => Ok(code as u16),
             _ => Err(self.alarm("unusable-g-code", word)),
@@ -148,6 +158,9 @@ impl Core {
         let number = self.number(word)?;
         if number.is_negative && number.digits != 0 {
             return Err(self.alarm("minus-not-allowed", word));
+        }
+        if number.has_point && !self.modal.is_inch && number.scale <= 6 && number.digits < 1_000_000_000 {
+            return Ok(Length::from_nm(number.digits * POWER[usize::from(6 - number.scale)]));
         }
         let unit: i64 = if self.modal.is_inch { 25_400_000 } else { 1_000_000 };
         let (mul, div) = if number.has_point || self.settings.is_calculator {

@@ -143,6 +143,8 @@ pub struct Block {
     pub skip: Skip,
     /// Text of the macro statement when the block is one.
     pub macro_statement: Option<(u32, u32)>,
+    /// A word stands behind a comma.
+    pub has_comma: bool,
     /// The block is a tape mark.
     pub is_percent: bool,
     /// The text ends here whatever follows.
@@ -158,20 +160,25 @@ impl Block {
     }
 
     /// Forgets everything and keeps the memory.
+    #[inline]
     pub fn clear(&mut self) {
         self.words.clear();
         self.extents.clear();
         self.faults.clear();
         self.skip = Skip::default();
         self.macro_statement = None;
+        self.has_comma = false;
         self.is_percent = false;
         self.is_end_of_text = false;
         self.present = 0;
     }
 
     /// Adds a word.
+    #[inline]
     pub(crate) fn push(&mut self, word: Word) {
-        if !word.comma {
+        if word.comma {
+            self.has_comma = true;
+        } else {
             let letter = usize::from(word.address - b'A');
             self.present |= 1 << letter;
             self.last[letter] = self.words.len() as u8;
@@ -183,6 +190,7 @@ impl Block {
     pub fn truncate(&mut self, kept: usize) {
         let words = std::mem::take(&mut self.words);
         self.present = 0;
+        self.has_comma = false;
         self.words = Vec::with_capacity(words.capacity());
         for word in words.into_iter().take(kept) {
             self.push(word);
@@ -200,11 +208,13 @@ impl Block {
     }
 
     /// True when the block has a word with this letter.
+    #[inline]
     pub const fn has(&self, letter: u8) -> bool {
         self.present & Self::bit(letter) != 0
     }
 
     /// The last word with this letter and without a comma.
+    #[inline]
     pub fn word(&self, letter: u8) -> Option<&Word> {
         if self.has(letter) {
             self.words.get(usize::from(self.last[usize::from(letter - b'A')]))

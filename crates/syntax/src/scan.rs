@@ -35,6 +35,7 @@ const KEYWORDS: [&[u8]; 11] =
 
 impl Scanner<'_> {
     fn run(&mut self) {
+        self.plain_words();
         while let Some(&byte) = self.line.get(self.at) {
             match byte {
                 b'A'..=b'Z' | b'a'..=b'z' => {
@@ -62,6 +63,50 @@ impl Scanner<'_> {
                 _ => self.junk(1, FaultKind::NotAWord),
             }
         }
+    }
+
+    /// The words that nearly every block begins with, and most consist of: an upper-case letter, a number, a
+    /// blank or the next letter. Stops in front of anything else, which [`Scanner::run`] then looks at in full.
+    #[inline]
+    fn plain_words(&mut self) {
+        let length = self.line.len();
+        let mut rest = &self.line[self.at..];
+        while let [letter, behind @ ..] = rest {
+            if *letter == b' ' {
+                rest = behind;
+                continue;
+            }
+            if !letter.is_ascii_uppercase() || self.block.words.len() >= BLOCK_WORDS_MAX {
+                break;
+            }
+            let (is_negative, number) = match behind {
+                [b'-', number @ ..] => (true, number),
+                _ => (false, behind),
+            };
+            let (value, after) = run_of_digits(0, number);
+            let (digits, has_point, scale, after) = match after {
+                [b'.', fraction @ ..] => {
+                    let (value, after) = run_of_digits(value, fraction);
+                    (value, true, fraction.len() - after.len(), after)
+                }
+                _ => (value, false, 0, after),
+            };
+            let typed = number.len() - after.len() - usize::from(has_point);
+            let ends = match after {
+                [] | [b' ', ..] => true,
+                [next, ..] => next.is_ascii_uppercase() && *next != b'O',
+            };
+            if !ends || typed == 0 || typed > usize::from(DIGITS_MAX) {
+                break;
+            }
+            let digits = if is_negative { -(digits as i64) } else { digits as i64 };
+            let number =
+                Decimal { digits, scale: scale as u8, typed_digits: typed as u8, has_point, is_negative };
+            let (start, end) = ((length - rest.len()) as u32, (length - after.len()) as u32);
+            self.block.push(Word { address: *letter, comma: false, start, end, value: Value::Number(number) });
+            rest = after;
+        }
+        self.at = length - rest.len();
     }
 
     fn nothing_yet(&self) -> bool {
@@ -460,6 +505,21 @@ impl Scanner<'_> {
         }
         false
     }
+}
+
+/// Reads on from `value` through the digits at the start of `text`; gives the new value (wrapping: the caller
+/// counts the digits) and what follows them.
+#[inline]
+fn run_of_digits(mut value: u64, mut text: &[u8]) -> (u64, &[u8]) {
+    while let [byte, rest @ ..] = text {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            break;
+        }
+        value = value.wrapping_mul(10).wrapping_add(u64::from(digit));
+        text = rest;
+    }
+    (value, text)
 }
 
 /// The ASCII mark that a full-width character (UTF-8 or GBK) stands for, and its length in bytes.

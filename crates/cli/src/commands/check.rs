@@ -18,6 +18,7 @@ use crate::finding::Finding;
 use crate::output::sarif::{self, SarifResult};
 use crate::render::Printer;
 use crate::session::Session;
+use crate::speech::Speech;
 
 /// Programs checked before the first of them are said.
 const BATCH: usize = 256;
@@ -93,7 +94,7 @@ pub(crate) fn run(options: &Check, printer: &Printer) -> Result<Status, Fault> {
     let mut candidates = Vec::new();
     for path in &options.files {
         if path.as_os_str() != STANDARD_INPUT && path.is_dir() {
-            gather(path, 0, &mut candidates);
+            gather(path, 0, &mut candidates, printer.speech);
         } else {
             candidates.push(Ok(path.clone()));
         }
@@ -147,7 +148,7 @@ fn check(candidate: &Candidate, task: &Task<'_>) -> Checked {
         Ok(path) => path,
         Err(finding) => return said(std::slice::from_ref(finding), None, task),
     };
-    let text = match ProgramText::open(path) {
+    let text = match ProgramText::open(path, printer.speech) {
         Ok(text) => text,
         Err(finding) => return said(&[finding], None, task),
     };
@@ -205,8 +206,8 @@ fn said(findings: &[Finding], text: Option<&ProgramText>, task: &Task<'_>) -> Ch
 }
 
 /// The programs in a folder and the folders in it, in the order of their names.
-fn gather(folder: &Path, depth: u32, candidates: &mut Vec<Candidate>) {
-    let fault = |error: &io::Error| unreadable(&folder.display().to_string(), error);
+fn gather(folder: &Path, depth: u32, candidates: &mut Vec<Candidate>, speech: Speech) {
+    let fault = |error: &io::Error| unreadable(&folder.display().to_string(), error, speech);
     let entries = fs::read_dir(folder).and_then(|entries| entries.collect::<io::Result<Vec<_>>>());
     let mut entries = match entries {
         Ok(entries) => entries,
@@ -220,7 +221,7 @@ fn gather(folder: &Path, depth: u32, candidates: &mut Vec<Candidate>) {
         match entry.file_type() {
             Ok(kind) if kind.is_dir() => {
                 if depth < DEPTH_MAX && !is_hidden(&path) {
-                    gather(&path, depth + 1, candidates);
+                    gather(&path, depth + 1, candidates, speech);
                 }
             }
             Ok(_) if is_program(&path) && !path.is_dir() => candidates.push(Ok(path)),

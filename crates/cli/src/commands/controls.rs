@@ -37,7 +37,8 @@ pub(crate) fn run(options: &Controls, printer: &Printer) -> Result<Status, Fault
             match options.format {
                 LookupFormat::Human => list_text(&controls, speech),
                 LookupFormat::Json => {
-                    let list: Vec<Value> = controls.iter().map(|control| summary_json(control, speech)).collect();
+                    let list: Vec<Value> =
+                        controls.iter().map(|control| summary_json(control, speech)).collect();
                     format!("{}\n", Value::Array(list))
                 }
             }
@@ -61,7 +62,9 @@ fn codes(control: &Control, speech: Speech) -> Vec<(String, String)> {
     let system = code_system(control);
     let functions = speech.functions().iter().filter(|(_, entry)| entry.is_on(control.name));
     let mut codes: Vec<_> = functions
-        .filter_map(|(_, entry)| Some((entry.code(system)?.to_string(), entry.name(speech.language).to_string())))
+        .filter_map(|(_, entry)| {
+            Some((entry.code(system)?.to_string(), entry.name(speech.language).to_string()))
+        })
         .collect();
     codes.sort();
     codes
@@ -69,7 +72,10 @@ fn codes(control: &Control, speech: Speech) -> Vec<(String, String)> {
 
 fn list_text(controls: &[Control], speech: Speech) -> String {
     let mut table = Table::new(&[Side::Left, Side::Left, Side::Right, Side::Right, Side::Left]);
-    table.row(["name", "title", "codes", "parameters", "summary"].map(|key| speech.fill(&format!("column-{key}"), &[])));
+    table.row(
+        ["name", "title", "codes", "parameters", "summary"]
+            .map(|key| speech.fill(&format!("column-{key}"), &[])),
+    );
     for control in controls {
         let name = control.name.to_string();
         let mark = if control.name == DEFAULT_CONTROL { speech.get("default-mark") } else { "" };
@@ -86,7 +92,11 @@ fn list_text(controls: &[Control], speech: Speech) -> String {
 
 fn full_text(control: &Control, speech: Speech) -> String {
     let row = |key: &str, value: &str| (speech.get(key).to_string(), value.to_string());
-    let mut out = facts(&[row("control", control.name), row("title", &control.title), row("summary", summary(control, speech))]);
+    let mut out = facts(&[
+        row("control", control.name),
+        row("title", &control.title),
+        row("summary", summary(control, speech)),
+    ]);
     for (key, fields) in [("policies", policies(control)), ("limits", limits(control))] {
         out.push_str(&format!("\n{}\n", heading(speech.get(key))));
         let mut table = Table::new(&[Side::Left, Side::Left]);
@@ -125,8 +135,10 @@ fn full_json(control: &Control, speech: Speech) -> Value {
         .into_iter()
         .map(|one| json!({ "number": one.number, "key": one.key, "name": one.title, "value": scalar(&one.value) }))
         .collect();
-    let codes: Vec<Value> =
-        codes(control, speech).into_iter().map(|(code, name)| json!({ "code": code, "name": name })).collect();
+    let codes: Vec<Value> = codes(control, speech)
+        .into_iter()
+        .map(|(code, name)| json!({ "code": code, "name": name }))
+        .collect();
     json!({
         "name": control.name,
         "title": control.title,
@@ -141,7 +153,10 @@ fn full_json(control: &Control, speech: Speech) -> Value {
 
 /// A number where it is one.
 fn scalar(value: &str) -> Value {
-    value.parse::<f64>().map_or_else(|_| json!(value), |number| if number.fract() == 0.0 { json!(number as i64) } else { json!(number) })
+    value.parse::<f64>().map_or_else(
+        |_| json!(value),
+        |number| if number.fract() == 0.0 { json!(number as i64) } else { json!(number) },
+    )
 }
 
 /// One line of what differs: section, name, value on the one, value on the other.
@@ -155,7 +170,10 @@ fn differences([one, other]: &[Control; 2], speech: Speech) -> Vec<Difference> {
     let mut found = Vec::new();
     let mut compare = |section, left: Vec<(String, String)>, right: Vec<(String, String)>| {
         let of = |fields: &[(String, String)], name: &str| {
-            fields.iter().find(|(known, _)| known == name).map_or_else(|| "-".to_string(), |(_, value)| value.clone())
+            fields
+                .iter()
+                .find(|(known, _)| known == name)
+                .map_or_else(|| "-".to_string(), |(_, value)| value.clone())
         };
         let mut names: Vec<&String> = left.iter().chain(&right).map(|(name, _)| name).collect();
         let mut seen = std::collections::HashSet::new();
@@ -171,13 +189,17 @@ fn differences([one, other]: &[Control; 2], speech: Speech) -> Vec<Difference> {
     compare("policies", [ids(one), policies(one)].concat(), [ids(other), policies(other)].concat());
     compare("limits", limits(one), limits(other));
     let by_name = |control: &Control| -> Vec<(String, String)> {
-        parameters(control, speech).into_iter().map(|p| (p.title, format!("{} = {}", p.number, p.value))).collect()
+        parameters(control, speech)
+            .into_iter()
+            .map(|p| (p.title, format!("{} = {}", p.number, p.value)))
+            .collect()
     };
     let (left, right) = (by_name(one), by_name(other));
     // A parameter whose number alone differs behaves alike.
     let value_of = |text: &str| text.split_once(" = ").map_or(String::new(), |(_, value)| value.to_string());
     let behaves_alike = |name: &str| {
-        let of = |fields: &[(String, String)]| fields.iter().find(|(n, _)| n == name).map(|(_, v)| value_of(v));
+        let of =
+            |fields: &[(String, String)]| fields.iter().find(|(n, _)| n == name).map(|(_, v)| value_of(v));
         of(&left).is_some() && of(&left) == of(&right)
     };
     let keep = |fields: &[(String, String)]| -> Vec<(String, String)> {
@@ -297,6 +319,10 @@ mod tests {
         let control = Control::load(DEFAULT_CONTROL).expect("the default");
         let policies = policies(&control);
         assert!(policies.contains(&("decimal-rule".to_string(), "by-parameter".to_string())), "{policies:?}");
-        assert!(limits(&control).iter().any(|(name, value)| name == "call-depth-max" && value.parse::<u8>().is_ok()));
+        assert!(
+            limits(&control)
+                .iter()
+                .any(|(name, value)| name == "call-depth-max" && value.parse::<u8>().is_ok())
+        );
     }
 }

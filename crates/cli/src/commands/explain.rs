@@ -117,7 +117,11 @@ fn functions(asked: &str, control: &Control, speech: Speech) -> Vec<Answer> {
             entry.code(*system).is_some_and(|text| text.split('/').any(|one| parse_code(one) == Some(code)))
         })
     };
-    table.iter().filter(|(_, entry)| names_it(entry)).map(|(name, entry)| function(name, entry, control, speech)).collect()
+    table
+        .iter()
+        .filter(|(_, entry)| names_it(entry))
+        .map(|(name, entry)| function(name, entry, control, speech))
+        .collect()
 }
 
 const SYSTEMS: [(CodeSystem, &str); 3] = [(CodeSystem::A, "A"), (CodeSystem::B, "B"), (CodeSystem::C, "C")];
@@ -136,7 +140,11 @@ fn function(name: &str, entry: &FunctionEntry, control: &Control, speech: Speech
     paragraphs.push(("label-systems", codes.join(", ")));
     paragraphs.push(("label-group", format!("{:02}", entry.group().0)));
     let on: Vec<&str> = control_names().into_iter().filter(|name| entry.is_on(name)).collect();
-    let on = if on.len() == control_names().len() { speech.get("all-controls").to_string() } else { on.join(", ") };
+    let on = if on.len() == control_names().len() {
+        speech.get("all-controls").to_string()
+    } else {
+        on.join(", ")
+    };
     paragraphs.push(("label-on", on));
     let state = if !entry.is_on(control.name) || entry.code(system).is_none() {
         speech.fill("not-on-control", &[("control", control.name)])
@@ -246,7 +254,12 @@ fn same_number(one: &str, other: &str) -> bool {
 fn unknown(asked: &str, control: &Control, speech: Speech) -> String {
     let messages = speech.messages();
     let mut known: BTreeSet<String> = BTreeSet::new();
-    known.extend(speech.functions().iter().filter_map(|(_, entry)| entry.code(code_system(control)).map(str::to_string)));
+    known.extend(
+        speech
+            .functions()
+            .iter()
+            .filter_map(|(_, entry)| entry.code(code_system(control)).map(str::to_string)),
+    );
     known.extend(speech.functions().iter().map(|(name, _)| name.to_string()));
     known.extend(AUXILIARY.values().filter_map(|entry| Some(entry.get("code")?.as_str()?.to_string())));
     known.extend(messages.keys().map(str::to_string));
@@ -254,7 +267,9 @@ fn unknown(asked: &str, control: &Control, speech: Speech) -> String {
     known.extend(control.parameters.all().into_iter().map(|(number, ..)| number));
     let why = speech.fill("explain-unknown", &[("asked", &clean(asked)), ("control", control.name)]);
     match nearest(asked, known.iter().map(String::as_str)) {
-        Some(near) => format!("{why}{}{}", speech.get("list-comma"), speech.fill("did-you-mean", &[("name", near)])),
+        Some(near) => {
+            format!("{why}{}{}", speech.get("list-comma"), speech.fill("did-you-mean", &[("name", near)]))
+        }
         None => why,
     }
 }

@@ -35,8 +35,6 @@ pub(crate) fn format(arguments: &Arguments) -> Format {
         Command::Plot(options) => options.format,
         Command::Explain(options) => lookup(options.format),
         Command::Controls(options) => lookup(options.format),
-        Command::Trace(_)
-        | Command::Completions(_)
-        | Command::Man(_) => Format::Human,
+        Command::Trace(_) | Command::Completions(_) | Command::Man(_) => Format::Human,
     }
 }

@@ -23,7 +23,7 @@ const SCALE: f32 = 2.0;
 /// Draws the picture.
 pub(crate) fn run(options: &Plot, printer: &Printer) -> Result<Status, Fault> {
     let speech = printer.speech;
-    let text = ProgramText::open(&options.file)?;
+    let text = ProgramText::open(&options.file, printer.speech)?;
     let session = Session::choose(&text, &options.machine, speech)?;
     let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
     let mut execution = Execution::new(&text, &session, &options.machine)?;
@@ -36,9 +36,9 @@ pub(crate) fn run(options: &Plot, printer: &Printer) -> Result<Status, Fault> {
     let language = picture_language(speech.language);
     let picture = write_svg(&path, &PictureOptions { title, language, ..PictureOptions::default() });
     if options.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-        WholeFile::write(&options.output, &paint(&options.output, &picture)?)?;
+        WholeFile::write(&options.output, &paint(&options.output, &picture)?, speech)?;
     } else {
-        WholeFile::write(&options.output, picture.as_bytes())?;
+        WholeFile::write(&options.output, picture.as_bytes(), speech)?;
     }
     say(&execution.findings(), &text, options.format, printer)
 }
@@ -68,7 +68,8 @@ fn say(findings: &[Finding], text: &ProgramText, format: Format, printer: &Print
 pub(super) fn paint(target: &Path, picture: &str) -> Result<Vec<u8>, Finding> {
     write_png(picture, SCALE).map_err(|fault| {
         let name = target.display().to_string();
-        let diagnostic = Diagnostic::error("output-unwritable").with("name", name).with("value", fault.to_string());
+        let diagnostic =
+            Diagnostic::error("output-unwritable").with("name", name).with("value", fault.to_string());
         Finding::new("", diagnostic).failed()
     })
 }

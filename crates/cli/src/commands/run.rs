@@ -23,6 +23,7 @@ use crate::output::{WholeFile, sarif};
 use crate::render::Printer;
 use crate::report::{Measure, RunReport, picture_language};
 use crate::session::Session;
+use crate::speech::Speech;
 
 /// Shorter runs show no progress.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -33,12 +34,13 @@ const COMMANDS_PER_LOOK: u32 = 16 * 1024;
 /// Runs the program and reports.
 pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     let speech = printer.speech;
-    let text = ProgramText::open(&options.file)?;
+    let text = ProgramText::open(&options.file, printer.speech)?;
     let session = Session::choose(&text, &options.machine, speech)?;
     let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
     let mut execution = Execution::new(&text, &session, &options.machine)?;
     let mut measure = Measure::new(execution.interpreter().position(), &machine, options.out.is_some());
-    let mut folder = options.out.as_deref().map(|folder| OutFolder::create(folder, &session)).transpose()?;
+    let mut folder =
+        options.out.as_deref().map(|folder| OutFolder::create(folder, &session, speech)).transpose()?;
 
     let mut progress = Progress::new(&text, printer);
     let decimals = execution.interpreter().decimals();
@@ -55,9 +57,19 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     let findings = execution.findings();
     let status = findings.iter().map(Finding::status).max().unwrap_or(Status::Clean);
     let blocks = execution.interpreter().blocks_run();
+    let stopped_at = execution.alarm().and_then(|alarm| alarm.place).map(|place| place.line);
     let file = text.name.clone();
-    let mut report =
-        RunReport { file, session, machine, findings, measure, decimals, blocks, written: Vec::new() };
+    let mut report = RunReport {
+        file,
+        session,
+        machine,
+        findings,
+        measure,
+        decimals,
+        blocks,
+        stopped_at,
+        written: Vec::new(),
+    };
     if let Some(mut folder) = folder {
         write_alarm(&mut folder.buffer, &execution, printer);
         folder.finish(&text, &mut report, printer)?;
@@ -95,9 +107,10 @@ struct OutFolder {
 }
 
 impl OutFolder {
-    fn create(folder: &Path, session: &Session) -> Result<Self, Finding> {
-        fs::create_dir_all(folder).map_err(|error| unwritable(&folder.display().to_string(), &error))?;
-        let trace = WholeFile::create(&folder.join("trace.jsonl"))?;
+    fn create(folder: &Path, session: &Session, speech: Speech) -> Result<Self, Finding> {
+        fs::create_dir_all(folder)
+            .map_err(|error| unwritable(&folder.display().to_string(), &error, speech))?;
+        let trace = WholeFile::create(&folder.join("trace.jsonl"), speech)?;
         let mut buffer = Vec::with_capacity(BUFFER_BYTES + 4096);
         jsonl::write_header(&mut buffer, &jsonl::TraceHeader { control: session.control.name });
         Ok(Self { folder: folder.to_path_buf(), trace, buffer })
@@ -114,20 +127,28 @@ impl OutFolder {
     }
 
     /// Completes the trace and writes the page and the pictures.
-    fn finish(mut self, text: &ProgramText, report: &mut RunReport, printer: &Printer) -> Result<(), Finding> {
+    fn finish(
+        mut self,
+        text: &ProgramText,
+        report: &mut RunReport,
+        printer: &Printer,
+    ) -> Result<(), Finding> {
         self.pour(0)?;
         let Self { folder, trace, .. } = self;
         let Some(path) = report.measure.path.take() else { return Ok(()) };
         let language = printer.speech.language;
         let page = report.page(text, &path, printer.speech);
-        let options =
-            PictureOptions { title: report.title(), language: picture_language(language), ..PictureOptions::default() };
+        let options = PictureOptions {
+            title: report.title(),
+            language: picture_language(language),
+            ..PictureOptions::default()
+        };
         let picture = write_svg(&path, &options);
         drop(path);
         let png = paint(&folder.join("path.png"), &picture)?;
-        WholeFile::write(&folder.join("report.html"), page.as_bytes())?;
-        WholeFile::write(&folder.join("path.svg"), picture.as_bytes())?;
-        WholeFile::write(&folder.join("path.png"), &png)?;
+        WholeFile::write(&folder.join("report.html"), page.as_bytes(), printer.speech)?;
+        WholeFile::write(&folder.join("path.svg"), picture.as_bytes(), printer.speech)?;
+        WholeFile::write(&folder.join("path.png"), &png, printer.speech)?;
         trace.finish()?;
         let names = ["report.html", "path.svg", "path.png", "trace.jsonl"];
         report.written = names.map(|name| folder.join(name).display().to_string()).to_vec();

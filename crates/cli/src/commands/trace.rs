@@ -21,8 +21,9 @@ pub(crate) const BUFFER_BYTES: usize = 64 * 1024;
 /// Writes the trace.
 pub(crate) fn run(options: &Trace, printer: &Printer) -> Result<Status, Fault> {
     let mut out = io::stdout().lock();
-    let format = options.format.unwrap_or(if out.is_terminal() { TraceFormat::Human } else { TraceFormat::Jsonl });
-    let text = ProgramText::open(&options.file)?;
+    let format =
+        options.format.unwrap_or(if out.is_terminal() { TraceFormat::Human } else { TraceFormat::Jsonl });
+    let text = ProgramText::open(&options.file, printer.speech)?;
     let session = Session::choose(&text, &options.machine, printer.speech)?;
     let mut execution = Execution::new(&text, &session, &options.machine)?;
     let decimals = execution.interpreter().decimals();
@@ -52,7 +53,8 @@ pub(crate) fn run(options: &Trace, printer: &Printer) -> Result<Status, Fault> {
     out.flush()?;
 
     let denies = options.machine.deny.is_some();
-    let findings = if denies { execution.findings() } else { execution.alarm_finding().into_iter().collect() };
+    let findings =
+        if denies { execution.findings() } else { execution.alarm_finding().into_iter().collect() };
     for finding in &findings {
         printer.finding(finding, Some(&text));
     }
@@ -75,9 +77,31 @@ pub(crate) fn write_alarm(buffer: &mut Vec<u8>, execution: &Execution<'_>, print
         key: finding.diagnostic.key,
         message: &words.message,
         line: finding.diagnostic.place.map_or(0, |place| place.line),
-        sequence: None,
-        program: None,
+        sequence: finding.spot(Some(execution.text())).and_then(|spot| sequence_number(&spot.text)),
+        program: execution.program(),
         depth: u8::try_from(trace.len()).unwrap_or(u8::MAX),
     };
     jsonl::write_alarm(buffer, &alarm);
+}
+
+/// The sequence number at the start of a line, behind the marks of a block that can be skipped.
+fn sequence_number(line: &str) -> Option<u32> {
+    let rest = line.trim_start().trim_start_matches(|c: char| c == '/' || c.is_ascii_digit()).trim_start();
+    let digits = rest.strip_prefix(['N', 'n'])?.trim_start();
+    let end = digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
+    digits[..end].parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sequence_numbers_stand_at_the_start() {
+        assert_eq!(sequence_number("N10 G00"), Some(10));
+        assert_eq!(sequence_number(" /2 N0020G0"), Some(20));
+        assert_eq!(sequence_number("G00 N10"), None);
+        assert_eq!(sequence_number("N"), None);
+        assert_eq!(sequence_number("N99999999999"), None);
+    }
 }

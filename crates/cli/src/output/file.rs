@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::fault::unwritable;
 use crate::finding::Finding;
+use crate::speech::Speech;
 
 /// A file being written beside its final name. Dropped without [`WholeFile::finish`], it leaves nothing behind.
 #[derive(Debug)]
@@ -15,21 +16,22 @@ pub(crate) struct WholeFile {
     /// The name it has until it is complete; `None` for a device, which is written as it is.
     temporary: Option<PathBuf>,
     file: File,
+    speech: Speech,
 }
 
 impl WholeFile {
     /// Begins a file.
-    pub(crate) fn create(target: &Path) -> Result<Self, Finding> {
-        Self::begin(target).map_err(|error| unwritable(&target.display().to_string(), &error))
+    pub(crate) fn create(target: &Path, speech: Speech) -> Result<Self, Finding> {
+        Self::begin(target, speech).map_err(|error| unwritable(&target.display().to_string(), &error, speech))
     }
 
-    fn begin(target: &Path) -> io::Result<Self> {
+    fn begin(target: &Path, speech: Speech) -> io::Result<Self> {
         let target = target.to_path_buf();
         match fs::metadata(&target) {
             Ok(metadata) if metadata.is_dir() => Err(io::Error::from(io::ErrorKind::IsADirectory)),
             Ok(metadata) if !metadata.is_file() => {
                 let file = File::options().write(true).open(&target)?;
-                Ok(Self { target, temporary: None, file })
+                Ok(Self { target, temporary: None, file, speech })
             }
             _ => {
                 let name = target.file_name().ok_or(io::ErrorKind::InvalidInput)?;
@@ -38,15 +40,14 @@ impl WholeFile {
                 hidden.push(format!(".{}.part", std::process::id()));
                 let temporary = target.with_file_name(hidden);
                 let file = File::create(&temporary)?;
-                Ok(Self { target, temporary: Some(temporary), file })
+                Ok(Self { target, temporary: Some(temporary), file, speech })
             }
         }
     }
 
     /// Puts the complete file under its name.
     pub(crate) fn finish(mut self) -> Result<(), Finding> {
-        let name = self.target.display().to_string();
-        self.commit().map_err(|error| unwritable(&name, &error))
+        self.commit().map_err(|error| self.fault(&error))
     }
 
     fn commit(&mut self) -> io::Result<()> {
@@ -61,15 +62,19 @@ impl WholeFile {
     }
 
     /// Writes a complete file at once.
-    pub(crate) fn write(target: &Path, bytes: &[u8]) -> Result<(), Finding> {
-        let mut file = Self::create(target)?;
-        file.file.write_all(bytes).map_err(|error| unwritable(&target.display().to_string(), &error))?;
+    pub(crate) fn write(target: &Path, bytes: &[u8], speech: Speech) -> Result<(), Finding> {
+        let mut file = Self::create(target, speech)?;
+        file.append(bytes)?;
         file.finish()
     }
 
     /// Adds bytes.
     pub(crate) fn append(&mut self, bytes: &[u8]) -> Result<(), Finding> {
-        self.file.write_all(bytes).map_err(|error| unwritable(&self.target.display().to_string(), &error))
+        self.file.write_all(bytes).map_err(|error| self.fault(&error))
+    }
+
+    fn fault(&self, error: &io::Error) -> Finding {
+        unwritable(&self.target.display().to_string(), error, self.speech)
     }
 }
 

@@ -24,6 +24,10 @@ impl RunReport {
     /// Operations, extents, speeds and time.
     pub(crate) fn body(&self, speech: Speech) -> String {
         let mut out = String::new();
+        if let Some(line) = self.stopped_at {
+            out.push_str(&speech.fill("stopped-at", &[("line", &line.to_string())]));
+            out.push_str("\n\n");
+        }
         if !self.measure.summary.operations().is_empty() {
             out.push_str(&self.operations(speech));
             out.push('\n');
@@ -47,7 +51,8 @@ impl RunReport {
     fn operations(&self, speech: Speech) -> String {
         use Side::{Left, Right};
         let mut table = Table::new(&[Right, Right, Left, Left, Right, Right, Right, Right, Right]);
-        let columns = ["number", "tool", "code", "operation", "lines", "passes", "cutting-mm", "rapid-mm", "time"];
+        let columns =
+            ["number", "tool", "code", "operation", "lines", "passes", "cutting-mm", "rapid-mm", "time"];
         table.row(columns.map(|key| speech.fill(&format!("column-{key}"), &[])));
         for (index, operation) in self.measure.summary.operations().iter().enumerate() {
             let lines = match (operation.first_line, operation.last_line) {
@@ -94,7 +99,13 @@ impl RunReport {
         let parts: Vec<String> = TIME_PARTS
             .iter()
             .filter(|(kind, _)| totals.seconds(*kind) > 0.0)
-            .map(|(kind, name)| format!("{} {}", speech.get(&format!("time-of-{name}")), speech.duration(totals.seconds(*kind))))
+            .map(|(kind, name)| {
+                format!(
+                    "{} {}",
+                    speech.get(&format!("time-of-{name}")),
+                    speech.duration(totals.seconds(*kind))
+                )
+            })
             .collect();
         let mut time = speech.duration(totals.total_s());
         if !parts.is_empty() {

@@ -28,6 +28,7 @@ impl RunReport {
             "setup": self.setup_name(),
             "machine": self.machine.name,
             "blocks": self.blocks,
+            "stopped_at_line": self.stopped_at,
             "diagnostics": diagnostics,
             "operations": self.operations_json(speech),
             "cutting_extents": self.extents_json(),

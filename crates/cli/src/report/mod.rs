@@ -83,6 +83,8 @@ pub(crate) struct RunReport {
     pub(crate) decimals: u8,
     /// Blocks executed.
     pub(crate) blocks: u64,
+    /// The line of the alarm that ended the program.
+    pub(crate) stopped_at: Option<u32>,
     /// Files written.
     pub(crate) written: Vec<String>,
 }

@@ -117,9 +117,8 @@ fn page_diagnostic(finding: &Finding, text: &ProgramText) -> ReportDiagnostic {
     let messages = SPEECHES[0].messages();
     let [english, chinese] = BOTH.map(|language| finding.words(messages, language));
     let spot = finding.spot(Some(text));
-    let (line, column, end_column) = spot.map_or((0, 0, 0), |spot| {
-        (spot.line, spot.span.start as u32 + 1, spot.span.end as u32 + 1)
-    });
+    let (line, column, end_column) =
+        spot.map_or((0, 0, 0), |spot| (spot.line, spot.span.start as u32 + 1, spot.span.end as u32 + 1));
     ReportDiagnostic {
         severity: finding.diagnostic.severity,
         id: finding.id(messages).to_string(),

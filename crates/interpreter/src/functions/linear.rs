@@ -31,17 +31,12 @@ fn linear(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
         return Err(core.alarm_at("feed-missing", call.word.as_ref()));
     };
     core.check_spindle();
-    if core.corner.is_some() || call.block.present() & CORNERS != 0 || has_comma_word(call.block) {
+    if core.corner.is_some() || call.block.present() & CORNERS != 0 || call.block.has_comma {
         core.refuse_strange_corner_letters(call.block)?;
         return core.linear_with_corner(call.block, to, feed);
     }
     core.modal.position = to;
     core.emit_move(to, Action::Feed { to, shape: Shape::Line, feed })
-}
-
-#[inline]
-fn has_comma_word(block: &Block) -> bool {
-    block.words.iter().any(|word| word.comma)
 }
 
 impl Core {

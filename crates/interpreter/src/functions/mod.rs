@@ -196,7 +196,7 @@ static ALL: &[&Function] = &[
 ];
 
 /// A function by its place in the list.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct FunctionId(u8);
 
 impl FunctionId {

@@ -25,6 +25,9 @@ fn rapid(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
 impl Core {
     /// Words behind a comma belong to the straight cut only.
     pub(super) fn refuse_comma_words(&self, block: &turnwright_syntax::Block) -> Result<(), Alarm> {
+        if !block.has_comma {
+            return Ok(());
+        }
         match block.words.iter().find(|word| word.comma) {
             Some(word) => Err(self.alarm("illegal-address", word)),
             None => Ok(()),
