@@ -296,7 +296,7 @@ const COMMAND_NAMES: [&str; 8] =
 fn picture_name(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let is_known = |end: &&str| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(end));
-    if ["svg", "png"].iter().any(|end| is_known(&end)) {
+    if ["svg", "png"].iter().any(is_known) {
         Ok(path)
     } else {
         Err("expected a name that ends in .svg or .png".to_string())

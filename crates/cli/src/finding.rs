@@ -16,7 +16,7 @@ pub(crate) struct Finding {
     /// Name of the file; empty when it is about no file.
     pub(crate) file: String,
     /// What was found.
-    pub(crate) diagnostic: Diagnostic,
+    pub(crate) diagnostic: Box<Diagnostic>,
     /// More about this one case: the nearest name, the words of the system.
     pub(crate) hint: Option<String>,
     /// The numbers of the control that was in use.
@@ -27,7 +27,13 @@ pub(crate) struct Finding {
 impl Finding {
     /// A diagnostic about a file.
     pub(crate) fn new(file: impl Into<String>, diagnostic: Diagnostic) -> Self {
-        Self { file: file.into(), diagnostic, hint: None, ids: AlarmIds::Four, is_failure: false }
+        Self {
+            file: file.into(),
+            diagnostic: Box::new(diagnostic),
+            hint: None,
+            ids: AlarmIds::Four,
+            is_failure: false,
+        }
     }
 
     /// The same, as a fault of usage, reading or writing.

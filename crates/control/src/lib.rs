@@ -51,6 +51,7 @@ pub struct Control {
     pub alarm_ids: AlarmIds,
     /// Its parameters and their present values.
     pub parameters: Parameters,
+    words_for_later: std::collections::BTreeMap<String, String>,
 }
 
 /// Why no control could be loaded.
@@ -83,6 +84,8 @@ struct File {
     limits: toml::Table,
     #[serde(default)]
     parameters: toml::Table,
+    #[serde(default)]
+    words_for_later: toml::Table,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -130,6 +133,7 @@ impl Control {
                 (&mut file.policies, above.policies),
                 (&mut file.limits, above.limits),
                 (&mut file.parameters, above.parameters),
+                (&mut file.words_for_later, above.words_for_later),
             ] {
                 for (key, value) in from {
                     own.entry(key).or_insert(value);
@@ -146,9 +150,17 @@ impl Control {
             summary,
             policies: file.policies.try_into().map_err(fault)?,
             limits: file.limits.try_into().map_err(fault)?,
+            words_for_later: file.words_for_later.try_into().map_err(fault)?,
             alarm_ids: file.alarm_ids.unwrap_or(AlarmIds::Four),
             parameters: Parameters::load(&map, &file.parameters).map_err(ControlFault::Data)?,
         })
+    }
+}
+
+impl Control {
+    /// Letters that a function takes on this control and that are not executed yet: they are refused by name.
+    pub fn words_for_later(&self, function: &str) -> &str {
+        self.words_for_later.get(function).map_or("", String::as_str)
     }
 }
 

@@ -165,8 +165,8 @@ impl Iterator for ThreadOnce {
     }
 }
 
-/// Whether a taper makes the path of a single cycle cross itself: it points away from the cut and is longer than the
-/// infeed. Some controls alarm, others cut it; so it is a question and not a refusal.
+/// Whether a taper makes the path of a single cycle cross itself: it points against the infeed and is longer. Without
+/// an infeed (the cut ends at the start's diameter) nothing crosses. Some controls alarm, others cut it; so it is a question and not a refusal.
 pub fn taper_crosses_start(
     first: FirstAxis,
     start: Position<WorkTip>,
@@ -177,7 +177,7 @@ pub fn taper_crosses_start(
         FirstAxis::X => (end.x - start.x).0,
         FirstAxis::Z => end.z - start.z,
     };
-    taper.signum() * infeed.signum() <= 0 && taper.abs() > infeed.abs()
+    taper.signum() * infeed.signum() < 0 && taper.abs() > infeed.abs()
 }
 
 #[cfg(test)]

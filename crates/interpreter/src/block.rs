@@ -163,7 +163,9 @@ impl Core {
             if severity == Severity::Alarm {
                 return Err(self.fault_alarm(key, fault));
             }
-            if !self.already_said(key, self.at.line) {
+            // What a whole file is written with is said once.
+            let line = if is_habit(fault.kind) { 0 } else { self.at.line };
+            if !self.already_said(key, line) {
                 let place = self.at.span(fault.start, fault.end);
                 let quote = self.quote(fault.start, fault.end);
                 self.say(Diagnostic::new(severity, key).at(place).with("word", quote));
@@ -358,6 +360,11 @@ impl Core {
     #[cold]
     fn foreign_letter(&self, block: &Block, foreign: u32, function: &Function) -> Alarm {
         let word = block.words.iter().find(|word| !word.comma && foreign & Block::bit(word.address) != 0);
+        if let Some(word) = word
+            && self.control.words_for_later(function.name).as_bytes().contains(&word.address)
+        {
+            return self.not_supported(function.name, word);
+        }
         let key = if function.is_multiple_cycle { "cycle-word-illegal" } else { "illegal-address" };
         self.alarm_at(key, word)
     }
@@ -420,6 +427,7 @@ impl Core {
             return Err(self.alarm("program-number-illegal", word));
         }
         self.program = Some(number);
+        self.program_start = self.line_cursor();
         Ok(())
     }
 
@@ -449,6 +457,11 @@ impl Core {
 }
 
 const SPEED_OR_TOOL: u32 = Block::bit(b'S') | Block::bit(b'T');
+
+/// Ways of writing that a file has everywhere or nowhere.
+const fn is_habit(kind: FaultKind) -> bool {
+    matches!(kind, FaultKind::FullWidth | FaultKind::TextAfterSemicolon)
+}
 
 /// The diagnostic of a fault that the reader found.
 fn fault_key(kind: FaultKind) -> (&'static str, Severity) {

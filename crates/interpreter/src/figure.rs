@@ -83,7 +83,7 @@ impl Core {
         range: &FigureRange,
         call: &mut Call<'_>,
     ) -> Result<(Cursor, Cursor), Alarm> {
-        let here = Cursor { source: self.at.source, offset: self.at.line_offset, line: self.at.line };
+        let here = self.line_cursor();
         let found = self.find_sequence(range.first, here, call.environment)?;
         let Some((first, firsts)) = found else {
             return Err(self.range_alarm(range.first, range.first_place));
@@ -167,7 +167,7 @@ impl Core {
         let (first, _) = self.find_range(&range, call)?;
         let is_adjacent = self.look_between(first, &range, call)?;
         let here = self.resume();
-        let cycle_line = Cursor { source: self.at.source, offset: self.at.line_offset, line: self.at.line };
+        let cycle_line = self.line_cursor();
         let (modal, at, tip) = (self.modal.clone(), self.at, self.tip);
         self.capture = Some(Capture { elements: Vec::new(), range });
         self.go(Resume { line: first, from: 0 }, call.environment)?;

@@ -62,9 +62,13 @@ impl Core {
         if self.from == 0 {
             Resume { line: self.text.cursor(), from: 0 }
         } else {
-            let line = Cursor { source: self.at.source, offset: self.at.line_offset, line: self.at.line };
-            Resume { line, from: self.from }
+            Resume { line: self.line_cursor(), from: self.from }
         }
+    }
+
+    /// The line of the block in work.
+    pub(crate) fn line_cursor(&self) -> Cursor {
+        Cursor { source: self.at.source, offset: self.at.line_offset, line: self.at.line }
     }
 
     /// Goes on reading at a place.

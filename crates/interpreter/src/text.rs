@@ -77,7 +77,9 @@ impl Text {
 
     /// The bytes of the line last read.
     pub(crate) fn bytes(&self, line: &Line) -> &[u8] {
-        if line.is_in_head { &self.head[line.start..line.end] } else { &self.buffer[line.start..line.end] }
+        let text = if line.is_in_head { &self.head } else { &self.buffer };
+        // A line that is no longer in the window is quoted as nothing.
+        text.get(line.start..line.end).unwrap_or(&[])
     }
 
     /// Reads the next line; `None` behind the last.
@@ -125,16 +127,19 @@ impl Text {
         line
     }
 
+    /// Reads more behind what is there, and lets go of what was read. At the end of the text nothing is let go:
+    /// messages still quote the last line.
     fn fill(&mut self, environment: &mut dyn Environment) -> Result<(), ReadFault> {
-        self.base += self.at as u64;
-        self.buffer.drain(..self.at);
-        self.at = 0;
         let kept = self.buffer.len();
         self.buffer.resize(kept + WINDOW_BYTES, 0);
-        let offset = self.base + kept as u64;
-        let read = environment.read(self.source, offset, &mut self.buffer[kept..])?;
-        self.buffer.truncate(kept + read.min(WINDOW_BYTES));
-        self.is_last = read == 0;
+        let read = environment.read(self.source, self.base + kept as u64, &mut self.buffer[kept..]);
+        self.buffer.truncate(kept + read.unwrap_or(0).min(WINDOW_BYTES));
+        self.is_last = read? == 0;
+        if !self.is_last {
+            self.base += self.at as u64;
+            self.buffer.drain(..self.at);
+            self.at = 0;
+        }
         Ok(())
     }
 

@@ -1,0 +1,371 @@
+//! The promises of the command line: exit statuses, streams, fields.
+
+mod support;
+
+use serde_json::Value;
+use support::{ALARMS, CLEAN, Folder, Ran, WARNS, json_lines, turnwright, turnwright_with_input};
+
+#[test]
+fn the_exit_status_says_what_was_found() {
+    let folder = Folder::new();
+    let (clean, warns, alarms) =
+        (folder.file("clean.nc", CLEAN), folder.file("warns.nc", WARNS), folder.file("alarms.nc", ALARMS));
+    for command in ["run", "check", "trace"] {
+        assert_eq!(turnwright(&[command, &clean]).status, 0, "{command}");
+        assert_eq!(turnwright(&[command, &warns]).status, 0, "{command}");
+        assert_eq!(turnwright(&[command, &warns, "--deny", "warnings"]).status, 1, "{command}");
+        assert_eq!(turnwright(&[command, &alarms]).status, 1, "{command}");
+        assert_eq!(turnwright(&[command, "missing.nc"]).status, 2, "{command}");
+        assert_eq!(turnwright(&[command]).status, 2, "{command}");
+    }
+    assert_eq!(turnwright(&["check", &clean, &alarms, "missing.nc"]).status, 2);
+    assert_eq!(turnwright(&[]).status, 2);
+}
+
+#[test]
+fn diagnostics_go_to_standard_error_for_people_and_to_standard_output_for_scripts() {
+    let folder = Folder::new();
+    let alarms = folder.file("alarms.nc", ALARMS);
+    let human = turnwright(&["check", &alarms]);
+    assert_eq!(human.out, "");
+    assert!(human.err.contains("alarm[PS0062]: "), "{}", human.err);
+    assert!(human.err.contains("alarms.nc:6:7"), "{}", human.err);
+    assert!(human.err.contains("= cause: ") && human.err.contains("= cure: "), "{}", human.err);
+    assert!(human.err.ends_with("1 file, 1 alarm, 0 warnings\n"), "{}", human.err);
+    assert!(!human.err.contains('\u{1b}'), "no colours into a pipe");
+    let json = turnwright(&["check", &alarms, "--format", "json"]);
+    assert_eq!(json.err, "");
+    assert_eq!(json.status, 1);
+    let line = &json_lines(&json.out)[0];
+    assert_eq!(line["severity"], "alarm");
+    assert_eq!(line["id"], "PS0062");
+    assert_eq!(line["key"], "cut-depth-illegal");
+    assert_eq!((&line["line"], &line["column"], &line["end_column"]), (&6.into(), &7.into(), &10.into()));
+    assert!(line["message"].is_string() && line["cause"].is_string() && line["remedy"].is_string());
+    assert_eq!(line["trace"], Value::Array(Vec::new()));
+    assert_eq!(line["file"], alarms.as_str());
+    let fields: Vec<&str> = line.as_object().expect("an object").keys().map(String::as_str).collect();
+    let mut promised = [
+        "file",
+        "severity",
+        "id",
+        "key",
+        "line",
+        "column",
+        "end_column",
+        "message",
+        "cause",
+        "remedy",
+        "trace",
+    ];
+    promised.sort_unstable();
+    assert_eq!(fields, promised);
+    assert!(json.out.starts_with("{\"file\":"), "fields stand in the order of the contract");
+}
+
+#[test]
+fn the_number_is_the_controls_own() {
+    let folder = Folder::new();
+    let alarms = folder.file("alarms.nc", ALARMS);
+    for (control, id) in [("fanuc-0i-mate-tb", "062"), ("fanuc-0i-tc", "062"), ("fanuc-0i-td", "PS0062")] {
+        let json = turnwright(&["check", &alarms, "--format", "json", "--control", control]);
+        assert_eq!(json_lines(&json.out)[0]["id"], id, "{control}");
+    }
+}
+
+#[test]
+fn sarif_is_one_document_with_rules() {
+    let folder = Folder::new();
+    let (warns, alarms) = (folder.file("warns.nc", WARNS), folder.file("a b#c.nc", ALARMS));
+    let ran = turnwright(&["check", &warns, &alarms, "--format", "sarif"]);
+    assert_eq!(ran.status, 1);
+    let document: Value = serde_json::from_str(&ran.out).expect("one document");
+    assert_eq!(document["version"], "2.1.0");
+    let run = &document["runs"][0];
+    let results = run["results"].as_array().expect("results");
+    assert_eq!(results.len(), 2);
+    let rules: Vec<_> =
+        run["tool"]["driver"]["rules"].as_array().expect("rules").iter().map(|r| &r["id"]).collect();
+    for result in results {
+        assert!(rules.contains(&&result["ruleId"]), "{result}");
+    }
+    let place = &results[1]["locations"][0]["physicalLocation"];
+    assert_eq!(place["region"]["startLine"], 6);
+    assert!(place["artifactLocation"]["uri"].as_str().expect("a uri").ends_with("/a%20b%23c.nc"));
+}
+
+#[test]
+fn a_trace_is_json_lines_into_a_pipe_and_ends_with_its_alarm() {
+    let folder = Folder::new();
+    let ran = turnwright(&["trace", &folder.file("clean.nc", CLEAN)]);
+    assert_eq!(
+        ran.out.lines().next(),
+        Some(
+            r#"{"turnwright":"trace","version":1,"control":"fanuc-0i-tf","units":"mm","x":"diameter","frame":"work"}"#
+        )
+    );
+    let lines = json_lines(&ran.out);
+    let feed = lines.iter().find(|line| line["op"] == "feed").expect("a feed");
+    assert_eq!((&feed["x"], &feed["z"], &feed["line"]), (&50.into(), &(-10).into(), &5.into()));
+    assert_eq!(lines.last().expect("a line")["op"], "end");
+    assert_eq!(ran.err, "");
+
+    let ran = turnwright(&["trace", &folder.file("alarms.nc", ALARMS)]);
+    let lines = json_lines(&ran.out);
+    let last = lines.last().expect("a line");
+    assert_eq!((&last["op"], &last["id"], &last["line"]), (&"alarm".into(), &"PS0062".into(), &6.into()));
+    assert_eq!(last["o"], 1);
+    assert!(ran.err.contains("alarm[PS0062]"), "{}", ran.err);
+
+    let text = turnwright(&["trace", &folder.file("clean.nc", CLEAN), "--format", "text"]);
+    assert!(text.out.contains("\nfeed d50 z-10 f0.2/rev\n"), "{}", text.out);
+}
+
+#[test]
+fn run_reports_and_writes_its_folder() {
+    let folder = Folder::new();
+    let program = folder.file("part.nc", ALARMS);
+    let out = folder.path("new/report");
+    let ran = turnwright(&["run", &program, "--out", &out.display().to_string()]);
+    assert_eq!(ran.status, 1, "{}", ran.err);
+    assert_eq!(support::names(&out), ["path.png", "path.svg", "report.html", "trace.jsonl"]);
+    assert!(ran.out.contains("fanuc-0i-tf, the default"), "{}", ran.out);
+    assert!(ran.out.contains("stopped the program at line 6"), "{}", ran.out);
+    let read = |name: &str| std::fs::read(out.join(name)).expect(name);
+    assert!(read("path.png").starts_with(b"\x89PNG"));
+    assert!(
+        String::from_utf8_lossy(&read("path.svg")).starts_with("<svg")
+            || read("path.svg").starts_with(b"<?xml")
+    );
+    let page = String::from_utf8(read("report.html")).expect("UTF-8");
+    assert!(page.trim_end().ends_with("</html>") && page.contains("PS0062"));
+    let trace = String::from_utf8(read("trace.jsonl")).expect("UTF-8");
+    assert_eq!(trace, turnwright(&["trace", &program]).out);
+
+    let json = turnwright(&["run", &program, "--format", "json"]);
+    let report: Value = serde_json::from_str(&json.out).expect("one object");
+    assert_eq!(report["control"], "fanuc-0i-tf");
+    assert_eq!(report["control_reason"]["key"], "default");
+    assert_eq!(report["diagnostics"][0]["id"], "PS0062");
+    assert!(report["time"]["total_s"].as_f64().expect("a time") > 0.0);
+    assert!(report["operations"][0]["seconds"].is_number());
+    assert_eq!(json.err, "");
+}
+
+#[test]
+fn plot_writes_the_picture_that_its_name_asks_for() {
+    let folder = Folder::new();
+    let program = folder.file("part.nc", CLEAN);
+    for (name, head) in [("a.svg", b"<svg".as_slice()), ("b.PNG", b"\x89PNG")] {
+        let picture = folder.path(name);
+        let ran = turnwright(&["plot", &program, "-o", &picture.display().to_string()]);
+        assert_eq!(ran.status, 0, "{}", ran.err);
+        let bytes = std::fs::read(&picture).expect("the picture");
+        assert!(bytes.windows(head.len()).take(200).any(|part| part == head), "{name}");
+    }
+    assert_eq!(turnwright(&["plot", &program, "-o", "c.jpg"]).status, 2);
+    assert_eq!(turnwright(&["plot", &program]).status, 2);
+}
+
+#[test]
+fn standard_input_is_a_program() {
+    let ran = turnwright_with_input(&["check", "-", "--format", "json"], ALARMS.as_bytes());
+    assert_eq!(ran.status, 1);
+    assert_eq!(json_lines(&ran.out)[0]["file"], "-");
+    let ran = turnwright_with_input(&["trace", "-"], CLEAN.as_bytes());
+    assert_eq!((ran.status, json_lines(&ran.out).last().expect("a line")["op"].clone()), (0, "end".into()));
+}
+
+#[test]
+fn the_control_is_chosen_in_the_promised_order() {
+    let folder = Folder::new();
+    let control = |ran: &Ran| {
+        let report: Value = serde_json::from_str(&ran.out).unwrap_or_else(|_| panic!("{ran:?}"));
+        (report["control"].as_str().unwrap_or("").to_string(), report["control_reason"]["key"].clone())
+    };
+    let plain = folder.file("plain.nc", CLEAN);
+    let run = |file: &str, more: &[&str]| {
+        control(&turnwright(&[&["run", file, "--format", "json"], more].concat()))
+    };
+    assert_eq!(run(&plain, &[]), ("fanuc-0i-tf".to_string(), "default".into()));
+    // A file of the same stem is found by itself.
+    folder.file("plain.toml", "control = \"gsk-988ta\"\n");
+    assert_eq!(run(&plain, &[]), ("gsk-988ta".to_string(), "setup".into()));
+    let named = folder.file("named.nc", format!("O0001 (Control GSK_980TDi)\n{CLEAN}"));
+    folder.file("named.toml", "control = \"gsk-988ta\"\n");
+    assert_eq!(run(&named, &[]), ("gsk-980tdi".to_string(), "directive".into()));
+    assert_eq!(run(&named, &["--control", "fanuc-0i-td"]), ("fanuc-0i-td".to_string(), "option".into()));
+    let other = folder.file("shop.toml", "control = \"fanuc-0i-tc\"\n");
+    assert_eq!(run(&plain, &["--setup", &other]), ("fanuc-0i-tc".to_string(), "setup".into()));
+    // A remark is no directive.
+    let remark = folder.file("remark.nc", format!("(PROFILE TURNING)\n{CLEAN}"));
+    assert_eq!(run(&remark, &[]), ("fanuc-0i-tf".to_string(), "default".into()));
+}
+
+#[test]
+fn wrong_names_are_answered_with_the_nearest() {
+    let folder = Folder::new();
+    let program = folder.file("part.nc", CLEAN);
+    let ran = turnwright(&["run", &program, "--control", "fanuc-0i-tff"]);
+    assert_eq!(ran.status, 2);
+    assert!(ran.err.contains("did you mean fanuc-0i-tf?"), "{}", ran.err);
+    let ran = turnwright(&["check", &program, "--param", "3401#9=1"]);
+    assert_eq!(ran.status, 2);
+    assert!(ran.err.contains("did you mean 3401#"), "{}", ran.err);
+    assert_eq!(turnwright(&["check", &program, "--param", "3401#0=2"]).status, 2);
+    assert_eq!(turnwright(&["check", &program, "--param", "3401"]).status, 2);
+    assert_eq!(turnwright(&["check", &program, "--skip", "10"]).status, 2);
+    let directive = folder.file("odd.nc", format!("(CONTROL fanuc-0i-tff)\n{CLEAN}"));
+    let ran = turnwright(&["check", &directive]);
+    assert_eq!(ran.status, 1);
+    assert!(ran.err.contains("odd.nc:1:1") && ran.err.contains("fanuc-0i-tf"), "{}", ran.err);
+    let ran = turnwright(&["explain", "cut-depth-ilegal"]);
+    assert_eq!(ran.status, 2);
+    assert!(ran.err.contains("cut-depth-illegal"), "{}", ran.err);
+    assert_eq!(turnwright(&["controls", "fanuk"]).status, 2);
+}
+
+#[test]
+fn parameters_come_from_the_setup_and_then_from_the_options() {
+    let folder = Folder::new();
+    let program = folder.file("part.nc", "O1\nG00 X100 Z1.\nM30\n");
+    let x = |more: &[&str]| {
+        let ran = turnwright(&[&["trace", program.as_str()], more].concat());
+        json_lines(&ran.out).iter().find(|line| line["op"] == "rapid").map(|line| line["x"].clone())
+    };
+    assert_eq!(x(&[]), Some(0.1.into()));
+    assert_eq!(x(&["--param", "3401#0=1"]), Some(100.into()));
+    folder.file("part.toml", "[parameters]\n\"3401#0\" = 1\n");
+    assert_eq!(x(&[]), Some(100.into()));
+    assert_eq!(x(&["--param", "3401#0=0"]), Some(0.1.into()));
+}
+
+#[test]
+fn switches_of_the_machine_are_heeded() {
+    let program = b"O1\n/G00 X1. Z1.\n/2 G00 X2. Z2.\nM01\nM30\n";
+    let ops = |more: &[&str]| -> Vec<String> {
+        let ran = turnwright_with_input(&[&["trace", "-"], more].concat(), program);
+        json_lines(&ran.out)
+            .iter()
+            .skip(1)
+            .map(|line| line["op"].as_str().unwrap_or("").to_string())
+            .collect()
+    };
+    assert_eq!(ops(&[]).iter().filter(|op| *op == "rapid").count(), 2);
+    assert_eq!(ops(&["--skip", "2"]).iter().filter(|op| *op == "rapid").count(), 1);
+    assert_eq!(ops(&["--skip", "1,2"]).iter().filter(|op| *op == "rapid").count(), 0);
+}
+
+#[test]
+fn folders_are_checked_in_the_order_of_their_names() {
+    let folder = Folder::new();
+    for name in ["b.nc", "a/z.CNC", "a/O0002", "c.txt", "O0001"] {
+        folder.file(name, ALARMS);
+    }
+    for name in ["a/notes.md", "c.toml", ".hidden.nc", ".git/x.nc"] {
+        folder.file(name, "");
+    }
+    let root = folder.0.display().to_string();
+    let ran = turnwright(&["check", &root, "--format", "json", "--control", "fanuc-0i-td"]);
+    let files: Vec<String> = json_lines(&ran.out)
+        .iter()
+        .map(|line| line["file"].as_str().expect("a name").trim_start_matches(&root).to_string())
+        .collect();
+    assert_eq!(files, ["/O0001", "/a/O0002", "/a/z.CNC", "/b.nc", "/c.txt"]);
+    let again = turnwright(&["check", &root, "--format", "json", "--control", "fanuc-0i-td"]);
+    assert_eq!(ran.out, again.out);
+}
+
+#[test]
+fn alarms_only_says_nothing_else() {
+    let folder = Folder::new();
+    let ran = turnwright(&["check", &folder.file("warns.nc", WARNS), "--alarms-only", "--format", "json"]);
+    assert_eq!((ran.status, ran.out.as_str()), (0, ""));
+}
+
+#[test]
+fn chinese_is_chinese_throughout() {
+    let folder = Folder::new();
+    let program = folder.file("part.nc", ALARMS);
+    let warns = folder.file("warns.nc", WARNS);
+    for arguments in [
+        vec!["check", &program, &warns, "missing.nc", "--lang", "zh"],
+        vec!["run", &program, "--lang", "zh"],
+        vec!["run", &warns, "--lang", "zh"],
+        vec!["explain", "G71", "--lang", "zh"],
+        vec!["explain", "PS0062", "--lang", "zh"],
+        vec!["explain", "3401#0", "--lang", "zh"],
+        vec!["explain", "G777", "--lang", "zh"],
+        vec!["check", &warns, "--param", "3401#9=1", "--lang", "zh"],
+    ] {
+        let ran = turnwright(&arguments);
+        let said = format!("{}{}", ran.out, ran.err);
+        for english in [
+            "alarm", "warning", "error", "note", "cause", "cure", "help", "mean", "file", "program", "time",
+            "the ",
+        ] {
+            // File names and options are the user's own words.
+            let words = said.replace("alarms.nc", "").replace("warns.nc", "");
+            assert!(!words.contains(english), "{arguments:?} says {english:?}: {said}");
+        }
+    }
+    let ran = turnwright(&["check", &program, "--lang", "zh"]);
+    for word in ["报警[PS0062]", "原因: ", "处理: ", "1 个文件，1 个报警"] {
+        assert!(ran.err.contains(word), "{word}: {}", ran.err);
+    }
+    let by_environment =
+        support::command(&["check", &program]).env("LANG", "zh_CN.UTF-8").output().expect("it starts");
+    assert_eq!(String::from_utf8_lossy(&by_environment.stderr), ran.err);
+}
+
+#[test]
+fn explain_answers_every_kind_of_question() {
+    for (code, says) in [
+        ("G71", "rough turning"),
+        ("g01", "straight cut"),
+        ("M03", "spindle forward"),
+        ("PS0062", "depth"),
+        ("062", "depth"),
+        ("62", "depth"),
+        ("cut-depth-illegal", "PS0062"),
+        ("5130", "run-out"),
+        ("3401#0", "point"),
+        ("T043", "semicolon"),
+        ("rough-turning", "G71"),
+    ] {
+        let ran = turnwright(&["explain", code]);
+        assert_eq!(ran.status, 0, "{code}: {}", ran.err);
+        assert!(ran.out.contains(says), "{code}: {}", ran.out);
+        let json = turnwright(&["explain", code, "--format", "json"]);
+        assert!(serde_json::from_str::<Value>(&json.out).expect("JSON").is_array(), "{code}");
+    }
+}
+
+#[test]
+fn controls_are_listed_shown_and_compared() {
+    let names: Value =
+        serde_json::from_str(&turnwright(&["controls", "--format", "json"]).out).expect("JSON");
+    assert_eq!(names.as_array().map(Vec::len), Some(8));
+    let list = turnwright(&["controls"]);
+    assert!(list.out.contains("gsk-980tdc") && list.out.contains("(default)"), "{}", list.out);
+    let one = turnwright(&["controls", "gsk-980tdi"]);
+    assert!(one.out.contains("decimal-rule") && one.out.contains("always-calculator"), "{}", one.out);
+    let same = turnwright(&["controls", "--diff", "fanuc-0i-tf", "fanuc-0i-tf"]);
+    assert_eq!(same.out, "no difference is known\n");
+    let ran = turnwright(&["controls", "--diff", "fanuc-0i-tf", "gsk-980tdi", "--format", "json"]);
+    let differences: Value = serde_json::from_str(&ran.out).expect("JSON");
+    assert!(differences["differences"].as_array().is_some_and(|list| !list.is_empty()));
+}
+
+#[test]
+fn every_command_has_help_with_an_example() {
+    for command in ["run", "check", "trace", "plot", "explain", "controls", "completions", "man"] {
+        let ran = turnwright(&[command, "--help"]);
+        assert_eq!(ran.status, 0, "{command}");
+        assert!(ran.out.contains(&format!("  turnwright {command}")), "{command}: {}", ran.out);
+    }
+    assert!(turnwright(&["--help"]).out.contains("Exit status:"));
+    assert!(turnwright(&["completions", "bash"]).out.contains("turnwright"));
+    assert!(turnwright(&["man"]).out.contains(".TH turnwright"));
+    assert!(turnwright(&["man", "check"]).out.contains("check"));
+}
