@@ -6,23 +6,17 @@ use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
+use crate::speech::Speech;
+
 /// Yellow headings and green literals, as the tools beside it have them.
 const STYLES: Styles = Styles::styled()
     .header(AnsiColor::Yellow.on_default().bold())
     .usage(AnsiColor::Yellow.on_default().bold())
     .literal(AnsiColor::Green.on_default());
 
-const STATUS_HELP: &str = "\
-Exit status:
-  0  no alarm and no error (warnings may be there; --deny warnings makes them errors)
-  1  an alarm or an error was found
-  2  wrong usage, or a file could not be read or written
-
-A simulator is not a safety device: prove every program on the machine.";
-
 /// Runs turning-centre NC programs as the control would, before the chuck turns.
 #[derive(Debug, Parser)]
-#[command(name = "turnwright", version, styles = STYLES, propagate_version = true, after_long_help = STATUS_HELP)]
+#[command(name = "turnwright", version, styles = STYLES, propagate_version = true, after_long_help = text("exit-status"))]
 pub(crate) struct Arguments {
     #[command(flatten)]
     pub(crate) presentation: Presentation,
@@ -77,7 +71,7 @@ pub(crate) enum Command {
 /// Which control and setup a program meets, and the switches of the machine.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Machine {
-    /// Control to run as [default: the program's own (CONTROL name), else the setup file's, else fanuc-0i-tf]
+    /// Control to run as [default: the program's own (CONTROL name), else the setup file's, else the usual one]
     #[arg(long, value_name = "NAME")]
     pub(crate) control: Option<String>,
     /// Setup file: machine, offsets, parameters [default: the program's name with .toml, beside it]
@@ -146,12 +140,7 @@ pub(crate) enum TraceFormat {
 /// The program runs as on the control: cycles, corners, feeds and all. With --out the report, the picture and
 /// the trace are written into a folder.
 #[derive(Debug, Args)]
-#[command(after_long_help = "\
-Examples:
-  turnwright run O0001.nc
-  turnwright run O0001.nc --out report            report.html, path.svg, path.png, trace.jsonl
-  turnwright run O0001.nc --control gsk-980tdi --param 051=500
-  turnwright run O0001.nc --format json")]
+#[command(after_long_help = examples("run"))]
 pub(crate) struct Run {
     /// The program; - for standard input
     pub(crate) file: PathBuf,
@@ -170,12 +159,7 @@ pub(crate) struct Run {
 /// Folders are searched for .nc .cnc .tap .txt .mpf .ngc .min .prg .iso and files named O and a number. Files
 /// are checked in parallel, the output keeps their order.
 #[derive(Debug, Args)]
-#[command(after_long_help = "\
-Examples:
-  turnwright check O0001.nc
-  turnwright check programs/ --deny warnings
-  turnwright check programs/ --format json | jq -r .id | sort | uniq -c
-  turnwright check O0001.nc --format sarif > check.sarif")]
+#[command(after_long_help = examples("check"))]
 pub(crate) struct Check {
     /// Programs and folders; - for standard input
     #[arg(required = true, value_name = "FILE")]
@@ -194,11 +178,7 @@ pub(crate) struct Check {
 ///
 /// Lengths are millimetres, X is a diameter. An alarm is the last line.
 #[derive(Debug, Args)]
-#[command(after_long_help = "\
-Examples:
-  turnwright trace O0001.nc
-  turnwright trace O0001.nc --format text > expected.txt
-  turnwright trace O0001.nc | jq -c 'select(.cycle == \"G71\" and .phase == \"cut\") | [.pass, .x, .z]'")]
+#[command(after_long_help = examples("trace"))]
 pub(crate) struct Trace {
     /// The program; - for standard input
     pub(crate) file: PathBuf,
@@ -211,10 +191,7 @@ pub(crate) struct Trace {
 
 /// Draws the tool path of a program.
 #[derive(Debug, Args)]
-#[command(after_long_help = "\
-Examples:
-  turnwright plot O0001.nc -o path.svg
-  turnwright plot O0001.nc -o path.png --lang zh")]
+#[command(after_long_help = examples("plot"))]
 pub(crate) struct Plot {
     /// The program; - for standard input
     pub(crate) file: PathBuf,
@@ -230,17 +207,11 @@ pub(crate) struct Plot {
 
 /// Says what a G or M code, an alarm or a parameter means.
 #[derive(Debug, Args)]
-#[command(after_long_help = "\
-Examples:
-  turnwright explain G71
-  turnwright explain PS0062
-  turnwright explain 062 --control fanuc-0i-mate-tb
-  turnwright explain 3401#0
-  turnwright explain cut-depth-illegal --lang zh")]
+#[command(after_long_help = examples("explain"))]
 pub(crate) struct Explain {
     /// G71, M03, PS0062, 062, cut-depth-illegal, 5130, 3401#0 …
     pub(crate) code: String,
-    /// Control that is asked [default: fanuc-0i-tf]
+    /// Control that is asked [default: the usual one of `turnwright controls`]
     #[arg(long, value_name = "NAME")]
     pub(crate) control: Option<String>,
     /// Form of the answer
@@ -250,11 +221,7 @@ pub(crate) struct Explain {
 
 /// Lists the controls and what differs between them.
 #[derive(Debug, Args)]
-#[command(after_long_help = "\
-Examples:
-  turnwright controls
-  turnwright controls gsk-980tdi
-  turnwright controls --diff fanuc-0i-mate-tb fanuc-0i-tf")]
+#[command(after_long_help = examples("controls"))]
 pub(crate) struct Controls {
     /// The control to show in full
     #[arg(conflicts_with = "diff")]
@@ -269,9 +236,7 @@ pub(crate) struct Controls {
 
 /// Prints a completion script for a shell.
 #[derive(Debug, Args)]
-#[command(after_long_help = "\
-Example:
-  turnwright completions bash > ~/.local/share/bash-completion/completions/turnwright")]
+#[command(after_long_help = examples("completions"))]
 pub(crate) struct Completions {
     /// The shell
     #[arg(value_enum)]
@@ -280,9 +245,7 @@ pub(crate) struct Completions {
 
 /// Prints the manual page.
 #[derive(Debug, Args)]
-#[command(after_long_help = "\
-Example:
-  turnwright man > turnwright.1 && man ./turnwright.1")]
+#[command(after_long_help = examples("man"))]
 pub(crate) struct Man {
     /// The command whose page is wanted [default: that of turnwright itself]
     #[arg(value_parser = COMMAND_NAMES)]
@@ -292,6 +255,16 @@ pub(crate) struct Man {
 /// The commands that have a page.
 const COMMAND_NAMES: [&str; 8] =
     ["run", "check", "trace", "plot", "explain", "controls", "completions", "man"];
+
+/// A text of the help, in the language of the environment: the options are not known yet.
+fn text(key: &'static str) -> &'static str {
+    Speech::new(None).get(key)
+}
+
+/// The examples of a command.
+fn examples(command: &str) -> &'static str {
+    Speech::new(None).find(&format!("examples-{command}"))
+}
 
 fn picture_name(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);

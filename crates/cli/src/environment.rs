@@ -70,6 +70,11 @@ impl ProgramText {
         Ok(Self { name, path: Some(path.to_path_buf()), content })
     }
 
+    /// A text that has been read already.
+    pub(crate) fn in_memory(name: impl Into<String>, bytes: &[u8]) -> Self {
+        Self { name: name.into(), path: None, content: Content::Memory(bytes.to_vec()) }
+    }
+
     /// Its length in bytes.
     pub(crate) fn len(&self) -> u64 {
         match &self.content {

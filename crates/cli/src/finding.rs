@@ -22,6 +22,8 @@ pub(crate) struct Finding {
     /// The numbers of the control that was in use.
     ids: AlarmIds,
     is_failure: bool,
+    /// Where it is, looked up already.
+    located: Option<Spot>,
 }
 
 impl Finding {
@@ -33,6 +35,7 @@ impl Finding {
             hint: None,
             ids: AlarmIds::Four,
             is_failure: false,
+            located: None,
         }
     }
 
@@ -51,6 +54,12 @@ impl Finding {
     /// The same, with the numbers that a control shows.
     pub(crate) fn with_ids(mut self, ids: AlarmIds) -> Self {
         self.ids = ids;
+        self
+    }
+
+    /// The same, its place looked up in its text.
+    pub(crate) fn located(mut self, text: &ProgramText) -> Self {
+        self.located = self.spot(Some(text));
         self
     }
 
@@ -76,7 +85,7 @@ impl Finding {
     /// Where it is, as people count; `None` when it is about the file as a whole.
     pub(crate) fn spot(&self, text: Option<&ProgramText>) -> Option<Spot> {
         let place = self.diagnostic.place.as_ref()?;
-        Some(Spot::new(place, text))
+        Some(self.located.clone().unwrap_or_else(|| Spot::new(place, text)))
     }
 
     /// One line of JSON, with the fields of the contract in their order.

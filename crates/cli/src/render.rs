@@ -15,12 +15,6 @@ use crate::finding::{Finding, Spot};
 use crate::output::sarif;
 use crate::speech::Speech;
 
-/// Lines longer than this are shown in part.
-const LINE_CHARS_MAX: usize = 120;
-
-/// Characters shown before the place in a line that is shown in part.
-const CHARS_BEFORE: usize = 40;
-
 /// Says things on the terminal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Printer {
@@ -118,14 +112,14 @@ impl Printer {
         );
         let (here, elsewhere): (Vec<_>, Vec<_>) = related
             .iter()
-            .partition(|(other, _)| shown.as_ref().is_some_and(|shown| shown.is_same_line(other)));
+            .partition(|(other, _)| shown.as_ref().is_some_and(|shown| shown.line == other.line));
         if let Some(shown) = &shown {
-            group = group.elements(shown.elements(&file, None, AnnotationKind::Primary, &here));
+            group = group.element(shown.element(&file, None, AnnotationKind::Primary, &here));
         } else if !file.is_empty() {
             group = group.element(Origin::path(file.as_str()));
         }
         for (shown, label) in elsewhere {
-            group = group.elements(shown.elements(&file, Some(label), AnnotationKind::Context, &[]));
+            group = group.element(shown.element(&file, Some(label), AnnotationKind::Context, &[]));
         }
         let mut notes: Vec<(&str, String)> = Vec::new();
         for call in finding.diagnostic.trace.iter().rev() {
@@ -172,9 +166,9 @@ fn related(finding: &Finding, text: Option<&ProgramText>, speech: Speech) -> Vec
 fn called_from(program: u32, line: u32, speech: Speech) -> String {
     let line = line.to_string();
     if program == 0 {
-        speech.fill("called-from-line", &[("line", &line)])
+        speech.fill("call-line", &[("line", &line)])
     } else {
-        speech.fill("called-from", &[("program", &format!("O{program:04}")), ("line", &line)])
+        speech.fill("call", &[("program", &format!("O{program:04}")), ("line", &line)])
     }
 }
 
@@ -191,58 +185,43 @@ fn level(severity: Severity, speech: Speech) -> Level<'static> {
     }
 }
 
-/// The part of a line that is shown.
+/// A line with a place in it.
 struct Shown {
     line: usize,
     column: usize,
     text: String,
     span: std::ops::Range<usize>,
-    is_part: bool,
 }
 
 impl Shown {
     fn new(spot: &Spot) -> Self {
         let (line, column) = (spot.line as usize, spot.column as usize);
-        if spot.text.chars().count() <= LINE_CHARS_MAX {
-            return Self { line, column, text: spot.text.clone(), span: spot.span.clone(), is_part: false };
-        }
-        let from = column.saturating_sub(1).saturating_sub(CHARS_BEFORE);
-        let window: String = spot.text.chars().skip(from).take(LINE_CHARS_MAX).collect();
-        let head = if from > 0 { "… " } else { "" };
-        let skipped: usize = spot.text.chars().take(from).map(char::len_utf8).sum();
-        let place = |at: usize| (at - skipped).min(window.len()) + head.len();
-        let span = place(spot.span.start)..place(spot.span.end);
-        let tail = if from + LINE_CHARS_MAX < spot.text.chars().count() { " …" } else { "" };
-        Self { line, column, text: format!("{head}{window}{tail}"), span, is_part: true }
+        Self { line, column, text: spot.text.clone(), span: spot.span.clone() }
     }
 
-    fn is_same_line(&self, other: &Self) -> bool {
-        self.line == other.line && !self.is_part && !other.is_part
-    }
-
-    fn elements<'a>(
+    /// The line, the place underlined, and other places in the same line. Long lines are shown in part.
+    fn element<'a>(
         &'a self,
         file: &'a str,
         label: Option<&'a String>,
         kind: AnnotationKind,
         others: &[&'a (Self, String)],
-    ) -> Vec<Element<'a>> {
+    ) -> Element<'a> {
         if self.text.is_empty() {
-            return vec![Origin::path(file).line(self.line).char_column(self.column).into()];
+            return Origin::path(file).line(self.line).char_column(self.column).into();
         }
         let label = label.filter(|label| !label.is_empty()).map(String::as_str);
-        let snippet = Snippet::source(self.text.as_str())
+        let others = others.iter().filter(|(_, label)| !label.is_empty());
+        Snippet::source(self.text.as_str())
+            .path(file)
             .line_start(self.line)
             .annotation(kind.span(self.span.clone()).label(label))
-            .annotations(others.iter().filter(|(_, label)| !label.is_empty()).map(|(other, label)| {
-                AnnotationKind::Context.span(other.span.clone()).label(label.as_str())
-            }));
-        if self.is_part {
-            let origin = Origin::path(file).line(self.line).char_column(self.column);
-            vec![origin.into(), snippet.into()]
-        } else {
-            vec![snippet.path(file).into()]
-        }
+            .annotations(
+                others.map(|(other, label)| {
+                    AnnotationKind::Context.span(other.span.clone()).label(label.as_str())
+                }),
+            )
+            .into()
     }
 }
 

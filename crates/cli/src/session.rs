@@ -199,7 +199,10 @@ fn find_setup(
         }
         Err(error) => return Err(unusable(speech.system(&error))),
     };
-    let setup = Setup::parse(&content).map_err(|fault| invalid_setup(&path, &fault))?;
+    let setup = Setup::parse(&content).map_err(|fault| {
+        let text = ProgramText::in_memory(name.as_str(), content.as_bytes());
+        invalid_setup(&path, &fault).located(&text)
+    })?;
     Ok((setup, Some(path)))
 }
 
@@ -254,7 +257,7 @@ fn directive(text: &ProgramText, speech: Speech) -> Directive {
                     Some(name) => speech.fill("did-you-mean", &[("name", name)]),
                     None => control_names().join(", "),
                 };
-                return Directive::Unknown(Box::new(finding.with_hint(hint)));
+                return Directive::Unknown(Box::new(finding.with_hint(hint).located(text)));
             }
             if keyword == "CONTROL" && odd.is_none() {
                 odd = Some(diagnostic(Diagnostic::warning));

@@ -23,7 +23,6 @@ static TEXTS: LazyLock<BTreeMap<String, [String; 2]>> = LazyLock::new(|| {
 });
 
 static MESSAGES: LazyLock<Messages> = LazyLock::new(Messages::load);
-static FUNCTIONS: LazyLock<Functions> = LazyLock::new(Functions::load);
 
 /// Both languages, English first, as every table of texts has them.
 pub(crate) const BOTH: [Language; 2] = [Language::English, Language::Chinese];
@@ -47,19 +46,24 @@ impl Speech {
     }
 
     /// A text; a missing one is shown by its key, so that nobody misses it.
-    pub(crate) fn get(self, key: &str) -> &str {
-        match TEXTS.get(key) {
-            Some([en, _]) if self.language == Language::English => en,
-            Some([_, zh]) => zh,
-            None => key,
-        }
+    pub(crate) fn get(self, key: &'static str) -> &'static str {
+        self.lookup(key).unwrap_or(key)
+    }
+
+    /// A text whose key is put together; empty when there is none.
+    pub(crate) fn find(self, key: &str) -> &'static str {
+        self.lookup(key).unwrap_or_default()
+    }
+
+    fn lookup(self, key: &str) -> Option<&'static str> {
+        let [english, chinese] = TEXTS.get(key)?;
+        Some(if self.language == Language::English { english } else { chinese })
     }
 
     /// A text with values in its braces.
     pub(crate) fn fill(self, key: &str, values: &[(&str, &str)]) -> String {
-        values.iter().fold(self.get(key).to_string(), |text, (name, value)| {
-            text.replace(&format!("{{{name}}}"), value)
-        })
+        let text = self.lookup(key).unwrap_or(key).to_string();
+        values.iter().fold(text, |text, (name, value)| text.replace(&format!("{{{name}}}"), value))
     }
 
     /// Diagnostics in words.
@@ -69,7 +73,7 @@ impl Speech {
 
     /// The code table.
     pub(crate) fn functions(self) -> &'static Functions {
-        &FUNCTIONS
+        Functions::load()
     }
 
     /// What the system says about a file, in the user's language where the case is a common one.

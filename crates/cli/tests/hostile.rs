@@ -112,8 +112,9 @@ fn a_long_line_is_shown_around_its_place() {
     let ran = turnwright(&["check", &file]);
     let column = remark.chars().count() + 5;
     assert!(ran.err.contains(&format!("long.nc:2:{column}")), "{}", ran.err);
-    let shown = ran.err.lines().find(|line| line.contains("X1.2.3")).expect("the place");
-    assert!(shown.contains('…') && shown.chars().count() < 140, "{shown}");
+    let shown =
+        ran.err.lines().find(|line| line.contains(" | ") && line.contains("X1.2.3")).expect("the place");
+    assert!(shown.contains("...") && shown.chars().count() < 150, "{shown}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The code table: which number names which function in G-code systems A, B and C, and what it is for.
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use serde::Deserialize;
 
@@ -102,14 +103,17 @@ pub struct Functions {
 }
 
 impl Functions {
-    /// Reads the table.
+    /// The table; read when it is first asked for.
     ///
     /// # Panics
     /// Never with the data compiled in; a test reads it.
-    pub fn load() -> Self {
-        let entries = toml::from_str(include_str!("../../../data/functions.toml"))
-            .unwrap_or_else(|error| unreachable!("data/functions.toml is read by a test: {error}"));
-        Self { entries }
+    pub fn load() -> &'static Self {
+        static TABLE: OnceLock<Functions> = OnceLock::new();
+        TABLE.get_or_init(|| {
+            let entries = toml::from_str(include_str!("../../../data/functions.toml"))
+                .unwrap_or_else(|error| unreachable!("data/functions.toml is read by a test: {error}"));
+            Self { entries }
+        })
     }
 
     /// Names and entries.

@@ -1,6 +1,7 @@
 //! Parameters: named by meaning, numbered by control.
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use serde::Deserialize;
 
@@ -74,9 +75,13 @@ pub struct Parameters {
     values: BTreeMap<String, f64>,
 }
 
-fn table() -> BTreeMap<String, Parameter> {
-    toml::from_str(include_str!("../../../data/parameters.toml"))
-        .unwrap_or_else(|error| unreachable!("data/parameters.toml is read by a test: {error}"))
+/// The table; read when it is first asked for.
+fn table() -> &'static BTreeMap<String, Parameter> {
+    static TABLE: OnceLock<BTreeMap<String, Parameter>> = OnceLock::new();
+    TABLE.get_or_init(|| {
+        toml::from_str(include_str!("../../../data/parameters.toml"))
+            .unwrap_or_else(|error| unreachable!("data/parameters.toml is read by a test: {error}"))
+    })
 }
 
 impl Parameters {
@@ -84,7 +89,7 @@ impl Parameters {
     pub(crate) fn load(map: &str, own: &toml::Table) -> Result<Self, String> {
         let mut values = BTreeMap::new();
         for (name, parameter) in table() {
-            values.insert(name, parameter.default);
+            values.insert(name.clone(), parameter.default);
         }
         for (name, value) in own {
             let value = value.as_integer().map(|n| n as f64).or(value.as_float());
@@ -155,21 +160,19 @@ impl Parameters {
 
     /// The parameter with a number of this control, with its name.
     pub fn find(&self, number: &str) -> Option<(String, Parameter, f64)> {
-        let (name, parameter) = table().into_iter().find(|(_, p)| {
+        let (name, parameter) = table().iter().find(|(_, p)| {
             p.numbers.get(&self.map).is_some_and(|n| normal(n.trim_start_matches('!')) == normal(number))
         })?;
-        let value = self.value(&name);
-        Some((name, parameter, value))
+        Some((name.clone(), parameter.clone(), self.value(name)))
     }
 
     /// Every parameter of this control: number, name, table entry, value.
     pub fn all(&self) -> Vec<(String, String, Parameter, f64)> {
         let mut all: Vec<_> = table()
-            .into_iter()
+            .iter()
             .filter_map(|(name, p)| {
                 let number = p.numbers.get(&self.map)?.trim_start_matches('!').to_string();
-                let value = self.value(&name);
-                Some((number, name, p, value))
+                Some((number, name.clone(), p.clone(), self.value(name)))
             })
             .collect();
         all.sort_by(|a, b| a.0.cmp(&b.0));

@@ -100,7 +100,7 @@ pub struct Related {
 /// A diagnostic as data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// Name of the diagnostic, `kebab-case`; the entry in `data/messages` has the same name.
+    /// Name of the diagnostic, `kebab-case`; the entry in `data/alarms.toml` has the same name.
     pub key: &'static str,
     /// How much it matters.
     pub severity: Severity,

@@ -48,6 +48,8 @@ mod code {
     pub(super) const END_AND_REWIND: u32 = 30;
     pub(super) const CALL: u32 = 98;
     pub(super) const RETURN: u32 = 99;
+    /// Macro interrupt on and off, and the call of a program from outside: the control's own, not executed yet.
+    pub(super) const FOR_LATER: [u32; 3] = [96, 97, 198];
 }
 
 impl Core {
@@ -69,6 +71,9 @@ impl Core {
                 code::CALL | code::RETURN => self.refuse_in_figure(word),
                 _ => self.figure_without_end(),
             });
+        }
+        if code::FOR_LATER.contains(&number) {
+            return Err(self.not_supported("an auxiliary function of the control itself", word));
         }
         if auxiliary.count > 0 {
             if !self.settings.several_auxiliary {

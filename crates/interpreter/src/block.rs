@@ -197,6 +197,9 @@ impl Core {
     #[inline]
     pub(crate) fn execute(&mut self, block: &Block, environment: &mut dyn Environment) -> Result<(), Alarm> {
         self.has_started = true;
+        if block.words.len() as u32 > block.present().count_ones() {
+            self.repeated_addresses(block)?;
+        }
         let mut codes = Codes::default();
         let mut auxiliary = Auxiliary::default();
         for (place, word) in block.words.iter().enumerate() {
@@ -261,7 +264,8 @@ impl Core {
                 }
             }
         }
-        if waiting_corner && self.corner.as_mut().is_some_and(crate::corner::PendingCorner::waits_too_long) {
+        let line = self.at.line;
+        if waiting_corner && self.corner.as_mut().is_some_and(|corner| corner.waits_too_long(line)) {
             return Err(self.corner_without_next());
         }
         if auxiliary.has_flow() { self.flow(auxiliary, block, environment) } else { Ok(()) }
@@ -295,6 +299,23 @@ impl Core {
                     self.same_group(block, first, word)?;
                 }
             }
+        }
+        Ok(())
+    }
+
+    /// The same address twice: the last counts, unless the parameter makes it an alarm.
+    #[cold]
+    fn repeated_addresses(&mut self, block: &Block) -> Result<(), Alarm> {
+        let same = |a: &Word, b: &Word| {
+            (a.address, a.comma) == (b.address, b.comma) && !matches!(a.address, b'G' | b'M')
+        };
+        let words = &block.words;
+        for (place, first) in words.iter().enumerate() {
+            let Some(again) = words[place + 1..].iter().find(|word| same(first, word)) else { continue };
+            if self.settings.duplicate_word_alarm {
+                return Err(self.alarm("duplicate-word", again));
+            }
+            self.warn("repeated-address", first);
         }
         Ok(())
     }
@@ -353,8 +374,30 @@ impl Core {
         auxiliary: &Auxiliary,
     ) -> Result<(), Alarm> {
         let allowed = ALWAYS | AXES | function.letters | auxiliary.letters();
-        let foreign = block.present() & !allowed;
-        if foreign == 0 { Ok(()) } else { Err(self.foreign_letter(block, foreign, function)) }
+        let mut foreign = block.present() & !allowed;
+        let is_idle = matches!(function.kind, Kind::Motion(_)) && block.present() & function.trigger == 0;
+        if is_idle {
+            // A motion that does not run takes no letters: `R5.` alone shapes nothing.
+            foreign |= block.present() & function.letters & !auxiliary.letters();
+        }
+        if foreign != 0 {
+            return Err(self.foreign_letter(block, foreign, function));
+        }
+        if block.has_comma && (is_idle || !matches!(function.kind, Kind::Motion(_))) {
+            return Err(self.comma_without_line(block));
+        }
+        Ok(())
+    }
+
+    /// A word behind a comma belongs to a straight cut with an end point.
+    #[cold]
+    fn comma_without_line(&self, block: &Block) -> Alarm {
+        match block.words.iter().find(|word| word.comma) {
+            Some(word) if word.address == b'A' => {
+                self.not_supported("direct drawing dimension programming (,A)", word)
+            }
+            word => self.alarm_at("illegal-address", word),
+        }
     }
 
     #[cold]
@@ -402,7 +445,9 @@ impl Core {
             return Err(self.alarm("point-not-allowed", word));
         }
         match u32::try_from(number.digits) {
-            Ok(value) if value < 100_000 => self.at.sequence = Some(value),
+            Ok(value) if value < 10u32.pow(u32::from(self.control.limits.sequence_digits)) => {
+                self.at.sequence = Some(value);
+            }
             _ => return Err(self.alarm("number-too-long", word)),
         }
         Ok(())

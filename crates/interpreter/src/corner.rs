@@ -47,10 +47,11 @@ pub(crate) struct PendingCorner {
 }
 
 impl PendingCorner {
-    /// Counts a block without a move; true when there were too many.
-    pub(crate) fn waits_too_long(&mut self) -> bool {
-        self.gap += 1;
-        self.gap > self.gap_max + 1
+    /// Counts a block without a move, in `line`; true when there were too many.
+    pub(crate) fn waits_too_long(&mut self, line: u32) -> bool {
+        // The block that asks for the corner is not one of them.
+        self.gap += u8::from(line != self.line);
+        self.gap > self.gap_max
     }
 }
 
@@ -82,7 +83,7 @@ impl Core {
         let mut found = None;
         for word in &block.words {
             let form = match (word.address, word.comma) {
-                (b'R', _) | (b'D', true) => Form::Fillet,
+                (b'R', _) => Form::Fillet,
                 (b'C', true) => Form::Chamfer,
                 (b'C', false) if self.settings.plain_corner_letters => Form::Chamfer,
                 (b'I' | b'K', false) => Form::Chamfer,

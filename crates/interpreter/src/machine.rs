@@ -208,6 +208,9 @@ impl Interpreter {
             said: HashSet::new(),
             said_spindle_stands: false,
         };
+        if setup.machine.is_some() || setup.rates.contains_key("reference") {
+            core.said.insert(("home-is-assumed", 0));
+        }
         core.start_at_reference();
         Ok(Self { core, block: Block::new(), alarm: None })
     }

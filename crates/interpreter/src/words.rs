@@ -43,7 +43,12 @@ impl Core {
     pub(crate) fn number(&self, word: &Word) -> Result<Decimal, Alarm> {
         match word.value {
             Value::Number(number) => Ok(number),
-            Value::Expression { .. } => Err(self.alarm("macro-not-supported-yet", word)),
+            Value::Expression { .. } => {
+                // An error of ours: the control itself would go on.
+                let mut alarm = self.alarm("macro-not-supported-yet", word);
+                alarm.severity = turnwright_diagnostics::Severity::Error;
+                Err(alarm)
+            }
             Value::Missing => Err(self.alarm("address-without-value", word)),
         }
     }

@@ -91,7 +91,7 @@ fn list_text(controls: &[Control], speech: Speech) -> String {
 }
 
 fn full_text(control: &Control, speech: Speech) -> String {
-    let row = |key: &str, value: &str| (speech.get(key).to_string(), value.to_string());
+    let row = |key: &'static str, value: &str| (speech.get(key).to_string(), value.to_string());
     let mut out = facts(&[
         row("control", control.name),
         row("title", &control.title),

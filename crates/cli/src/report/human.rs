@@ -8,7 +8,7 @@ use crate::table::{Side, Table, facts, heading};
 impl RunReport {
     /// Which control, which setup and why: what stands before everything else.
     pub(crate) fn head(&self, speech: Speech) -> String {
-        let label = |key: &str| speech.get(key).to_string();
+        let label = |key: &'static str| speech.get(key).to_string();
         let control = &self.session.control;
         let reason = self.session.reason.text(speech);
         let named = |what: &str| speech.fill("named", &[("name", what), ("why", &reason)]);
@@ -81,7 +81,7 @@ impl RunReport {
     }
 
     fn figures(&self, speech: Speech) -> Vec<(String, String)> {
-        let label = |key: &str| speech.get(key).to_string();
+        let label = |key: &'static str| speech.get(key).to_string();
         let summary = &self.measure.summary;
         let mut rows = Vec::new();
         let cutting = match self.cutting_extents() {
@@ -102,7 +102,7 @@ impl RunReport {
             .map(|(kind, name)| {
                 format!(
                     "{} {}",
-                    speech.get(&format!("time-of-{name}")),
+                    speech.find(&format!("time-of-{name}")),
                     speech.duration(totals.seconds(*kind))
                 )
             })

@@ -23,6 +23,9 @@ pub(super) static DWELL: Function =
 const DWELL_MAX: u32 = 99_999_999;
 
 fn dwell(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
+    if let Some(word) = call.block.word(b'Z').or(call.block.word(b'W')) {
+        return Err(core.alarm("illegal-address", word));
+    }
     let thousandths = if let Some(word) = call.block.word(b'P') {
         i64::from(core.whole(word, DWELL_MAX)?)
     } else if let Some(word) = call.block.word(b'X').or(call.block.word(b'U')) {

@@ -274,7 +274,7 @@ impl Core {
             Misuse::PeckNegative | Misuse::StepNegative => ("groove-step-negative", letter(b'P')),
             Misuse::StepZero => ("groove-step-zero", call.word.as_ref()),
             Misuse::ReliefNegative => ("groove-relief-negative", letter(b'R')),
-            Misuse::NoThread => ("arc-endpoint-missing", letter(b'Z')),
+            Misuse::NoThread => ("thread-length-illegal", letter(b'Z')),
             Misuse::LeadNotPositive => ("lead-missing", letter(b'F')),
             Misuse::HeightNotPositive => ("thread-height-or-depth-illegal", letter(b'P')),
             Misuse::FirstDepthNotPositive => ("thread-height-or-depth-illegal", letter(b'Q')),
@@ -286,7 +286,7 @@ impl Core {
             }
             Misuse::FinishingPassesZero => ("pass-count-illegal", call.word.as_ref()),
             Misuse::NoseAngle => ("thread-angle-illegal", letter(b'P')),
-            Misuse::ThreadTooShort => ("thread-height-or-depth-illegal", letter(b'Z')),
+            Misuse::ThreadTooShort => ("thread-length-illegal", letter(b'Z')),
             Misuse::RunOutNegative | Misuse::RunOutAngle => ("run-out-too-long", call.word.as_ref()),
         };
         self.alarm_at(key, word)
