@@ -399,7 +399,7 @@ impl ThreadLine {
 }
 
 const fn nm(length: Length) -> f64 {
-    length.nm() as f64
+    length.to_nm_float()
 }
 
 /// Tangent of an angle in whole degrees, 0 standing for 45.

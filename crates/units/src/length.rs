@@ -94,6 +94,11 @@ impl Length {
         self.nm as f64 / NM_PER_MM as f64
     }
 
+    /// Nanometres as a float, for ratios and roots of lengths: exact up to 9,000 km.
+    pub const fn to_nm_float(self) -> f64 {
+        self.nm as f64
+    }
+
     /// The distance from zero.
     pub const fn abs(self) -> Self {
         Self { nm: self.nm.saturating_abs() }
