@@ -44,15 +44,28 @@ pub fn run(blocks: u64, rounds: usize) -> Result<(), String> {
         }
         let mine = median(&ours);
         let count = (blocks * times) as f64;
-        print!("{label:16} {:8.3} s  {:6.1} M blocks/s  {:6.1} MiB", mine.cpu_s, count / mine.cpu_s / 1e6, mine.memory_mib);
+        print!(
+            "{label:16} {:8.3} s  {:6.1} M blocks/s  {:6.1} MiB",
+            mine.cpu_s,
+            count / mine.cpu_s / 1e6,
+            mine.memory_mib
+        );
         if !theirs.is_empty() {
             let peer = median(&theirs);
-            print!("   rs274 {:7.3} s  {:6.1} MiB   ratio {:.1}", peer.cpu_s, peer.memory_mib, peer.cpu_s / mine.cpu_s);
+            print!(
+                "   rs274 {:7.3} s  {:6.1} MiB   ratio {:.1}",
+                peer.cpu_s,
+                peer.memory_mib,
+                peer.cpu_s / mine.cpu_s
+            );
         }
         println!();
         match (name, step) {
             ("lines", "interpret") => once = mine.cpu_s,
-            ("lines5", _) => println!("S2 growth        {:8.2} (five times the blocks, time per block)", mine.cpu_s / 5.0 / once),
+            ("lines5", _) => println!(
+                "S2 growth        {:8.2} (five times the blocks, time per block)",
+                mine.cpu_s / 5.0 / once
+            ),
             _ => {}
         }
     }
@@ -66,7 +79,11 @@ fn reading(folder: &Path, rounds: usize) -> Result<(), String> {
         let costs: Result<Vec<_>, _> = (0..rounds).map(|_| own(step, &path)).collect();
         let cost = median(&costs?);
         let share = (cost.memory_mib * 1_048_576.0) / bytes;
-        println!("{label:16} {:8.3} s  {:6.0} MB/s  {share:5.2} x the source in memory", cost.cpu_s, bytes / cost.cpu_s / 1e6);
+        println!(
+            "{label:16} {:8.3} s  {:6.0} MB/s  {share:5.2} x the source in memory",
+            cost.cpu_s,
+            bytes / cost.cpu_s / 1e6
+        );
     }
     Ok(())
 }
@@ -96,7 +113,12 @@ impl Peer {
         Command::new("rs274").arg("-h").stdout(Stdio::null()).stderr(Stdio::null()).status().ok()?;
         let library = folder.join("silence.so");
         let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("silence.c");
-        let built = Command::new("cc").args(["-O2", "-w", "-shared", "-fPIC"]).arg(&source).arg("-o").arg(&library).status();
+        let built = Command::new("cc")
+            .args(["-O2", "-w", "-shared", "-fPIC"])
+            .arg(&source)
+            .arg("-o")
+            .arg(&library)
+            .status();
         let silence = built.is_ok_and(|status| status.success()).then_some(library);
         Some(Self { silence, home: folder.to_path_buf() })
     }
@@ -128,7 +150,8 @@ fn measure(command: Command) -> Result<Cost, String> {
     // The wrapper itself must print: the library is set for the child only.
     if let Some((_, Some(library))) = command.get_envs().find(|(name, _)| *name == "LD_PRELOAD") {
         wrapped = Command::new("python3");
-        let script = SCRIPT.replace("sys.argv[1:],", "sys.argv[2:],env=dict(os.environ,LD_PRELOAD=sys.argv[1]),");
+        let script =
+            SCRIPT.replace("sys.argv[1:],", "sys.argv[2:],env=dict(os.environ,LD_PRELOAD=sys.argv[1]),");
         wrapped.arg("-c").arg(script).arg(library).arg(command.get_program()).args(command.get_args());
         if let Some((_, Some(home))) = command.get_envs().find(|(name, _)| *name == "HOME") {
             wrapped.env("HOME", home);

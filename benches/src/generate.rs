@@ -41,7 +41,10 @@ impl Pair {
             File::create(&path).map(BufWriter::new).map_err(|error| format!("{}: {error}", path.display()))
         };
         let mut pair = Self { nc: open("nc")?, ngc: open("ngc")? };
-        pair.line("%\nO1000\nG18 G21 G40 G98 M3 S1000\nG0 X100. Z2.\nF200.\n", "G18 G21 G90 G94 G40 G8\nG0 X50. Z2.\nF200.\n")?;
+        pair.line(
+            "%\nO1000\nG18 G21 G40 G98 M3 S1000\nG0 X100. Z2.\nF200.\n",
+            "G18 G21 G90 G94 G40 G8\nG0 X50. Z2.\nF200.\n",
+        )?;
         Ok(pair)
     }
 
@@ -96,10 +99,7 @@ fn arcs(folder: &Path, name: &str, blocks: u64, by_radius: bool) -> Result<(), S
     let mut random = Random(1_234_567_890_123);
     let (mut x, mut z) = (400_000i64, 0i64);
     let start = |pair: &mut Pair, x: i64, z: i64| {
-        pair.line(
-            &format!("G1 X{} Z{}\n", Word(x * 2), Word(z)),
-            &format!("G1 X{} Z{}\n", Word(x), Word(z)),
-        )
+        pair.line(&format!("G1 X{} Z{}\n", Word(x * 2), Word(z)), &format!("G1 X{} Z{}\n", Word(x), Word(z)))
     };
     start(&mut pair, x, z)?;
     for block in 0..blocks {

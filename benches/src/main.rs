@@ -24,20 +24,22 @@ use turnwright_syntax::{Block, Tree, find_line_end, scan_block};
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let result = match words.as_slice() {
-        ["generate", folder] => generate::all(Path::new(folder), 1_000_000),
-        ["generate", folder, blocks] => match blocks.parse() {
-            Ok(blocks) => generate::all(Path::new(folder), blocks),
-            Err(_) => Err(format!("{blocks} is no number of blocks")),
-        },
-        ["lex", file] => lex(Path::new(file)),
-        ["tree", file] => tree(Path::new(file)),
-        ["interpret", file] => interpret(Path::new(file)),
-        ["listing", file] => listing(Path::new(file)),
-        ["compare"] => compare::run(1_000_000, 5),
-        ["compare", blocks] => compare::run(blocks.parse().unwrap_or(1_000_000), 5),
-        _ => Err("usage: compare [BLOCKS] | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE".to_string()),
-    };
+    let result =
+        match words.as_slice() {
+            ["generate", folder] => generate::all(Path::new(folder), 1_000_000),
+            ["generate", folder, blocks] => match blocks.parse() {
+                Ok(blocks) => generate::all(Path::new(folder), blocks),
+                Err(_) => Err(format!("{blocks} is no number of blocks")),
+            },
+            ["lex", file] => lex(Path::new(file)),
+            ["tree", file] => tree(Path::new(file)),
+            ["interpret", file] => interpret(Path::new(file)),
+            ["listing", file] => listing(Path::new(file)),
+            ["compare"] => compare::run(1_000_000, 5),
+            ["compare", blocks] => compare::run(blocks.parse().unwrap_or(1_000_000), 5),
+            _ => Err("usage: compare [BLOCKS] | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE"
+                .to_string()),
+        };
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
@@ -70,7 +72,8 @@ fn lex(path: &Path) -> Result<(), String> {
     let (mut at, mut words, mut sum) = (0, 0u64, 0i64);
     while at < text.len() {
         let rest = &text[at..];
-        let (end, next) = find_line_end(rest, true).map_or((rest.len(), rest.len()), |end| (end.start, end.next));
+        let (end, next) =
+            find_line_end(rest, true).map_or((rest.len(), rest.len()), |end| (end.start, end.next));
         scan_block(&rest[..end], 0, &mut block);
         words += block.words.len() as u64;
         for word in &block.words {
@@ -89,7 +92,11 @@ fn tree(path: &Path) -> Result<(), String> {
     let text = read(path)?;
     let bytes = text.len();
     let tree = Tree::parse(text);
-    println!("{} tokens, {:.2} x the source", tree.tokens().count(), tree.memory_bytes() as f64 / bytes as f64);
+    println!(
+        "{} tokens, {:.2} x the source",
+        tree.tokens().count(),
+        tree.memory_bytes() as f64 / bytes as f64
+    );
     Ok(())
 }
 
@@ -99,8 +106,8 @@ fn interpreter(path: &Path) -> Result<(Interpreter, Texts), String> {
     // Four decimals are typed: IS-C keeps them.
     control.parameters.set("1013#1", "1").map_err(|fault| format!("{fault:?}"))?;
     let options = Options::default();
-    let interpreter = Interpreter::new(control, &Setup::default(), SourceId(0), options)
-        .map_err(|fault| fault.message)?;
+    let interpreter =
+        Interpreter::new(control, &Setup::default(), SourceId(0), options).map_err(|fault| fault.message)?;
     let file = File::open(path).map_err(|error| format!("{}: {error}", path.display()))?;
     Ok((interpreter, Texts(file)))
 }

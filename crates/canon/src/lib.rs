@@ -51,6 +51,12 @@ pub enum Action {
         /// Spindle angle at which the move starts.
         start_angle: Angle,
     },
+    /// The tool stands where it stood, and that place has other coordinates from here on: a coordinate preset,
+    /// another work system, another tool offset. Nothing moves.
+    Relocate {
+        /// The same place in the new coordinates.
+        to: Position<WorkTip>,
+    },
     /// Standing still.
     Dwell(Dwell),
     /// New state of the spindle.

@@ -54,6 +54,10 @@ pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
                 write_fixed(out, start_angle.millidegrees(), 3);
             }
         }
+        Action::Relocate { to } => {
+            out.extend_from_slice(b"relocate");
+            write_position(out, *to, decimals);
+        }
         Action::Dwell(Dwell::Time(seconds)) => {
             out.extend_from_slice(format!("dwell {}s", seconds.0).as_bytes());
         }

@@ -3,7 +3,6 @@
 use turnwright_canon::Command;
 use turnwright_diagnostics::{Diagnostic, Severity, SourceId};
 use turnwright_interpreter::{Interpreter, Options, Step};
-use turnwright_units::{Position, WorkTip};
 
 use crate::arguments::{Deny, Machine};
 use crate::environment::{Panel, ProgramText};
@@ -21,8 +20,6 @@ pub(crate) struct Execution<'a> {
     early: Option<Diagnostic>,
     /// Number of the program that gave the last command.
     program: Option<u32>,
-    /// Where the tool stood before the step, and how many blocks had been run.
-    before: (Position<WorkTip>, u64),
 }
 
 impl<'a> Execution<'a> {
@@ -31,7 +28,6 @@ impl<'a> Execution<'a> {
         let options = machine.max_blocks.map_or_else(Options::default, |blocks_max| Options { blocks_max });
         let interpreter = Interpreter::new(session.control.clone(), &session.setup, SourceId(0), options)
             .map_err(|fault| session.setup_fault(&fault))?;
-        let before = (interpreter.position(), 0);
         Ok(Self {
             interpreter,
             panel: Panel::new(text, machine),
@@ -40,14 +36,12 @@ impl<'a> Execution<'a> {
             alarm: None,
             early: session.warning.clone(),
             program: None,
-            before,
         })
     }
 
     /// The next command; `None` at the end of the program or at an alarm.
     #[inline]
     pub(crate) fn next_command(&mut self) -> Option<Command> {
-        self.before = (self.interpreter.position(), self.interpreter.blocks_run());
         loop {
             match self.interpreter.step(&mut self.panel) {
                 Step::Emit(command) => {
@@ -68,11 +62,6 @@ impl<'a> Execution<'a> {
     /// Runs to the end and gives nothing but findings.
     pub(crate) fn drain(&mut self) {
         while self.next_command().is_some() {}
-    }
-
-    /// Where the tool stood before the last command, when a block of its own gave that command.
-    pub(crate) fn position_before(&self) -> Option<Position<WorkTip>> {
-        (self.interpreter.blocks_run() != self.before.1).then_some(self.before.0)
     }
 
     /// Number of the program that gave the last command.

@@ -187,6 +187,7 @@ impl PathRecorder {
                 let advance = Advance::LeadMm(lead.0.to_mm() as f32);
                 self.add_cut(command, *to, None, SegmentKind::Thread, advance);
             }
+            Action::Relocate { to } => self.at = *to,
             Action::Tool { tool, .. } => self.tool = *tool,
             Action::Dwell(Dwell::Time(_) | Dwell::Turns(_)) => self.dwell_s += seconds,
             Action::Spindle { .. }
@@ -198,11 +199,6 @@ impl PathRecorder {
             | Action::Message(_) => {}
         }
         self.commands = self.commands.saturating_add(1);
-    }
-
-    /// The tool is at `position` without having moved: the work coordinates were changed under it.
-    pub fn place_tool(&mut self, position: Position<WorkTip>) {
-        self.at = position;
     }
 
     /// Everything kept, in order.

@@ -94,7 +94,10 @@ impl Core {
         let after = self.zero();
         let place = self.modal.position;
         self.modal.position = Position::new(place.x + before.x - after.x, place.z + before.z - after.z);
-        self.tip = Position::new(self.tip.x + before.x - after.x, self.tip.z + before.z - after.z);
+        if before != after {
+            self.tip = Position::new(self.tip.x + before.x - after.x, self.tip.z + before.z - after.z);
+            self.emit(turnwright_canon::Action::Relocate { to: self.tip });
+        }
     }
 
     /// The end point that the X, Z, U and W words of a block ask for, from the present position.

@@ -72,7 +72,8 @@ fn code_systems_a_b_and_c() {
 
 #[test]
 fn with_and_without_a_subprogram() {
-    let whole = "O1\nG98 M3 S800\nG0 X50. Z2.\nG1 W-5. F100.\nU2.\nG1 W-5. F100.\nU2.\nG1 W-5. F100.\nU2.\nM30\n";
+    let whole =
+        "O1\nG98 M3 S800\nG0 X50. Z2.\nG1 W-5. F100.\nU2.\nG1 W-5. F100.\nU2.\nG1 W-5. F100.\nU2.\nM30\n";
     let called = "O1\nG98 M3 S800\nG0 X50. Z2.\nM98 P30002\nM30\nO2\nG1 W-5. F100.\nU2.\nM99\n";
     let counted = called.replace("P30002", "P2 L3");
     assert_eq!(moves(whole, &tf()), moves(called, &tf()));
@@ -100,7 +101,11 @@ fn the_negative_side_is_the_mirror_image() {
     assert!(positive.alarm.is_none() && negative.alarm.is_none());
     // The first move comes from the reference point on both.
     let ends = |run: &support::Run| -> Vec<_> {
-        run.commands.iter().filter_map(|command| command.action.end_point()).map(|to| (to.x.0, to.z)).collect()
+        run.commands
+            .iter()
+            .filter_map(|command| command.action.end_point())
+            .map(|to| (to.x.0, to.z))
+            .collect()
     };
     let mirrored: Vec<_> = ends(&negative).into_iter().map(|(x, z)| (-x, z)).collect();
     assert_eq!(ends(&positive), mirrored);
@@ -108,8 +113,10 @@ fn the_negative_side_is_the_mirror_image() {
 
 #[test]
 fn the_finishing_cycle_is_the_figure_itself() {
-    let by_hand = "O1\nG98 M3 S800\nG0 X60. Z2.\nG0 X30.\nG1 Z-10. F100.\nX40. Z-20.\nX60.\nG0 X60. Z2.\nM30\n";
-    let by_cycle = "O1\nG98 M3 S800\nG0 X60. Z2.\nG70 P1 Q2\nM30\nN1 G0 X30.\nG1 Z-10. F100.\nX40. Z-20.\nN2 X60.\n";
+    let by_hand =
+        "O1\nG98 M3 S800\nG0 X60. Z2.\nG0 X30.\nG1 Z-10. F100.\nX40. Z-20.\nX60.\nG0 X60. Z2.\nM30\n";
+    let by_cycle =
+        "O1\nG98 M3 S800\nG0 X60. Z2.\nG70 P1 Q2\nM30\nN1 G0 X30.\nG1 Z-10. F100.\nX40. Z-20.\nN2 X60.\n";
     assert_eq!(moves(by_hand, &tf()), moves(by_cycle, &tf()));
 }
 
@@ -129,6 +136,10 @@ fn layout_of_the_text_does_not_matter() {
 #[test]
 fn every_move_has_a_length() {
     let run = run(b"O1\nG98 M3\nG0 X50. Z2.\nX50.\nG1 Z2. F100.\nU0 W0\nX50. Z2.\nM30\n", &tf());
-    let count = run.commands.iter().filter(|c| matches!(c.action, Action::Rapid { .. } | Action::Feed { .. })).count();
+    let count = run
+        .commands
+        .iter()
+        .filter(|c| matches!(c.action, Action::Rapid { .. } | Action::Feed { .. }))
+        .count();
     assert_eq!(count, 1);
 }

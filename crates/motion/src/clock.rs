@@ -143,12 +143,6 @@ impl Clock {
         self.position
     }
 
-    /// Tells the clock that the tip has other coordinates without having moved: another work coordinate
-    /// system, another offset.
-    pub const fn relocate(&mut self, position: Position<WorkTip>) {
-        self.position = position;
-    }
-
     /// The sums so far.
     pub const fn totals(&self) -> &Totals {
         &self.totals
@@ -180,6 +174,10 @@ impl Clock {
                 self.still(Kind::ToolChange, if turns { self.rates.tool_change_s } else { 0.0 })
             }
             Action::Coolant(_) | Action::Auxiliary { .. } => self.still(Kind::Other, self.rates.auxiliary_s),
+            Action::Relocate { to } => {
+                self.position = *to;
+                self.still(Kind::Other, 0.0)
+            }
             Action::Stop | Action::OptionalStop | Action::End | Action::Message(_) => {
                 self.still(Kind::Other, 0.0)
             }

@@ -237,7 +237,7 @@ fn what_waits_for_a_standing_spindle_is_counted_not_guessed() {
 #[test]
 fn other_coordinates_without_a_move_take_no_time() {
     let mut clock = clock(40.0, 0.0);
-    clock.relocate(at(50.0, 10.0));
+    clock.advance(&Command { action: Action::Relocate { to: at(50.0, 10.0) }, origin: Origin::line(1) });
     assert_eq!(rapid(&mut clock, 50.0, 10.0, RapidPath::EachAxis).seconds, 0.0);
     assert_eq!(clock.position(), at(50.0, 10.0));
 }

@@ -103,7 +103,13 @@ impl Scanner<'_> {
             let number =
                 Decimal { digits, scale: scale as u8, typed_digits: typed as u8, has_point, is_negative };
             let (start, end) = ((length - rest.len()) as u32, (length - after.len()) as u32);
-            self.block.push(Word { address: *letter, comma: false, start, end, value: Value::Number(number) });
+            self.block.push(Word {
+                address: *letter,
+                comma: false,
+                start,
+                end,
+                value: Value::Number(number),
+            });
             rest = after;
         }
         self.at = length - rest.len();

@@ -29,7 +29,7 @@ pub(crate) fn run(options: &Plot, printer: &Printer) -> Result<Status, Fault> {
     let mut execution = Execution::new(&text, &session, &options.machine)?;
     let mut measure = Measure::new(execution.interpreter().position(), &machine, true);
     while let Some(command) = execution.next_command() {
-        measure.add(&command, execution.position_before());
+        measure.add(&command);
     }
     let Some(path) = measure.path else { return Ok(Status::Failed) };
     let title = options.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());

@@ -45,7 +45,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     let mut progress = Progress::new(&text, printer);
     let decimals = execution.interpreter().decimals();
     while let Some(command) = execution.next_command() {
-        measure.add(&command, execution.position_before());
+        measure.add(&command);
         if let Some(folder) = &mut folder {
             jsonl::write_command(&mut folder.buffer, &command, decimals);
             folder.pour(BUFFER_BYTES)?;

@@ -34,17 +34,9 @@ impl Measure {
         Self { clock: Clock::new(start, rates), summary: Summary::new(), path }
     }
 
-    /// Adds a command; `from` is where the tool stood before when the coordinates may have changed under it.
+    /// Adds a command.
     #[inline]
-    pub(crate) fn add(&mut self, command: &Command, from: Option<Position<WorkTip>>) {
-        if let Some(from) = from
-            && from != self.clock.position()
-        {
-            self.clock.relocate(from);
-            if let Some(path) = &mut self.path {
-                path.place_tool(from);
-            }
-        }
+    pub(crate) fn add(&mut self, command: &Command) {
         let timing = self.clock.advance(command);
         self.summary.add(command, &timing);
         if let Some(path) = &mut self.path {

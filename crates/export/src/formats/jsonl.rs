@@ -88,6 +88,8 @@ pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
                 write_number(out, br#","max_rpm":"#, rpm.0);
             }
         }
+        // No line of its own: each move says where it ends in the coordinates in force.
+        Action::Relocate { .. } => return,
         Action::Tool { tool, offset } => {
             write_number(out, br#"{"op":"tool","tool":"#, *tool);
             write_number(out, br#","offset":"#, *offset);

@@ -108,7 +108,9 @@ impl Run {
                 format!(" {}:{}-{}", place.line, place.column, place.end_column)
             });
             out.push_str(&format!("{severity} {id} {}{place}\n", diagnostic.key));
-            let raw = messages.raw(diagnostic.key, Language::English).unwrap_or_else(|| panic!("{}", diagnostic.key));
+            let raw = messages
+                .raw(diagnostic.key, Language::English)
+                .unwrap_or_else(|| panic!("{}", diagnostic.key));
             for name in raw.message.split('{').skip(1).filter_map(|part| part.split('}').next()) {
                 let given = diagnostic.arguments.iter().any(|(known, _)| *known == name);
                 assert!(given, "{}: nothing is put in for {{{name}}}", diagnostic.key);
