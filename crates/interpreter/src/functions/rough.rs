@@ -264,10 +264,11 @@ impl Core {
         use cycles::Misuse;
         let letter = |letter: u8| call.block.word(letter).or(call.word.as_ref());
         let (key, word) = match fault {
-            Misuse::OutOfRange => ("position-out-of-range", call.word.as_ref()),
-            Misuse::StartMismatch => ("internal-error", call.word.as_ref()),
+            Misuse::OutOfRange => ("number-too-long", call.word.as_ref()),
+            Misuse::StartMismatch => ("figure-start-mismatch", call.word.as_ref()),
             Misuse::NoContour => ("figure-without-contour", letter(b'Q')),
-            Misuse::DepthNotPositive | Misuse::BelowIncrement => ("cut-depth-illegal", call.word.as_ref()),
+            Misuse::DepthNotPositive => ("cut-depth-illegal", call.word.as_ref()),
+            Misuse::BelowIncrement => ("depth-below-increment", call.word.as_ref()),
             Misuse::EscapeNegative | Misuse::RetractNegative => ("minus-not-allowed", letter(b'R')),
             Misuse::NotMonotone(_) => ("figure-not-monotone-x", call.word.as_ref()),
             Misuse::PassesZero => ("pass-count-illegal", letter(b'R')),
@@ -284,10 +285,10 @@ impl Core {
             Misuse::AllowanceNegative | Misuse::AllowanceNotBelowHeight => {
                 ("thread-finishing-allowance-illegal", letter(b'P'))
             }
-            Misuse::FinishingPassesZero => ("pass-count-illegal", call.word.as_ref()),
+            Misuse::FinishingPassesZero => ("thread-finishing-passes-illegal", call.word.as_ref()),
             Misuse::NoseAngle => ("thread-angle-illegal", letter(b'P')),
             Misuse::ThreadTooShort => ("thread-length-illegal", letter(b'Z')),
-            Misuse::RunOutNegative | Misuse::RunOutAngle => ("run-out-too-long", call.word.as_ref()),
+            Misuse::RunOutNegative | Misuse::RunOutAngle => ("run-out-illegal", call.word.as_ref()),
         };
         self.alarm_at(key, word)
     }
