@@ -181,7 +181,13 @@ impl Core {
         if let Ok(Some(line)) = self.text.next(call.environment) {
             self.line = line;
         }
+        let stands_before = first.offset < cycle_line.offset;
+        if stands_before {
+            // Going on behind such a figure would run the cycle for ever.
+            self.warn_block("behaviour-uncertain");
+        }
         let behind = match self.control.policies.after_roughing {
+            AfterRoughing::BehindFigure if stands_before => here,
             AfterRoughing::BehindFigure => behind,
             AfterRoughing::BehindAdjacentFigure if is_adjacent => behind,
             AfterRoughing::BehindAdjacentFigure => here,
