@@ -88,6 +88,11 @@ impl Core {
             auxiliary.first = place as u8;
         }
         auxiliary.count += 1;
+        let is_spindle =
+            matches!(number, code::SPINDLE_CLOCKWISE | code::SPINDLE_COUNTER_CLOCKWISE | code::SPINDLE_STOP);
+        if (is_spindle && auxiliary.spindle.is_some()) || (is_flow && auxiliary.flow.is_some()) {
+            return Err(self.alarm("auxiliary-combination-illegal", word));
+        }
         let flow = |flow| Some((flow, place as u8));
         match number {
             code::STOP => auxiliary.flow = flow(Flow::Stop),

@@ -232,6 +232,8 @@ impl Core {
             let feed = self.feed(word, per_revolution)?;
             if function.takes_lead {
                 self.check_lead(word);
+            } else {
+                self.check_feed(word, feed, per_revolution);
             }
             self.modal.feed = Some(feed);
         }

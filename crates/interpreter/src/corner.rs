@@ -30,8 +30,10 @@ enum Form {
 #[derive(Clone, Debug)]
 pub(crate) struct PendingCorner {
     form: Form,
-    /// Size with the sign of the next line's direction, radius.
+    /// Size, radius; with a sign it is that of the next line's direction.
     size: Length,
+    /// The sign counts: the form without a comma, or a minus in the other.
+    is_signed: bool,
     axis: Axis,
     /// Where the first line starts.
     start: Position<WorkTip>,
@@ -125,12 +127,21 @@ impl Core {
             self.modal.position = to;
             return self.emit_move(to, Action::Feed { to, shape: Shape::Line, feed });
         };
+        let size = self.radius(&word, Role::CornerSize)?.0;
+        if size.is_zero() {
+            // A corner of no size is the plain corner of two lines.
+            self.modal.position = to;
+            return self.emit_move(to, Action::Feed { to, shape: Shape::Line, feed });
+        }
         let corner_point = self.modal.position;
         let moves_x = to.x != corner_point.x;
         let moves_z = to.z != corner_point.z;
         let axis = match (moves_x, moves_z) {
             (true, false) => Axis::X,
             (false, true) => Axis::Z,
+            (true, true) if word.comma => {
+                return Err(self.not_supported("a corner between slanting lines (,C and ,R)", &word));
+            }
             (true, true) => return Err(self.alarm("taper-in-corner-block", &word)),
             (false, false) => return Err(self.alarm("corner-longer-than-move", &word)),
         };
@@ -143,7 +154,6 @@ impl Core {
         if !fits {
             return Err(self.alarm("corner-axis-mismatch", &word));
         }
-        let size = self.radius(&word, Role::CornerSize)?.0;
         self.missing_point(&word);
         if direction(axis, start, to).abs() < size.abs() {
             return Err(self.alarm("corner-longer-than-move", &word));
@@ -152,6 +162,7 @@ impl Core {
         self.corner = Some(PendingCorner {
             form,
             size,
+            is_signed: !word.comma || size.signum() < 0,
             axis,
             start,
             corner: to,
@@ -180,9 +191,17 @@ impl Core {
         };
         let ahead = direction(next, corner.corner, to);
         if !direction(corner.axis, corner.corner, to).is_zero() {
+            if !corner.is_signed {
+                let diagnostic = Diagnostic::error("not-supported-yet").at(corner.place);
+                let diagnostic =
+                    diagnostic.with("code", corner.quote.clone()).with("word", corner.quote.clone());
+                let name = "a corner between slanting lines (,C and ,R)";
+                return Err(self.finish(diagnostic.with("name", name).near(self.block_place(), "next-block")));
+            }
             return Err(self.corner_alarm("no-perpendicular-after-corner", corner));
         }
-        if ahead.abs() < corner.size.abs() || ahead.signum() != corner.size.signum() {
+        let against = corner.is_signed && ahead.signum() != corner.size.signum();
+        if ahead.abs() < corner.size.abs() || against {
             return Err(self.corner_alarm("bad-move-after-corner", corner));
         }
         let size = corner.size.abs();

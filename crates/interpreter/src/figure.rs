@@ -94,7 +94,13 @@ impl Core {
             call.environment,
         )?;
         let behind = found.filter(|(last, _)| last.offset >= first.offset);
-        let Some((last, lasts)) = behind else { return Err(self.range_alarm(range.last, range.last_place)) };
+        let Some((last, lasts)) = behind else {
+            if found.is_none() {
+                return Err(self.range_alarm(range.last, range.last_place));
+            }
+            let diagnostic = Diagnostic::alarm("figure-order-reversed").at(range.last_place);
+            return Err(self.finish(diagnostic.with("word", format!("P{} Q{}", range.first, range.last))));
+        };
         for (count, number, place) in
             [(firsts, range.first, range.first_place), (lasts, range.last, range.last_place)]
         {

@@ -195,4 +195,17 @@ impl Core {
             None => Err(self.alarm("number-too-long", word)),
         }
     }
+
+    /// Warns about a feed that is usual in the other feed mode.
+    #[inline]
+    pub(crate) fn check_feed(&mut self, word: &Word, feed: Length, per_revolution: bool) {
+        // More than this a revolution, or less than this a minute, is hardly ever meant.
+        const PER_REVOLUTION_MAX: Length = Length::from_mm(10);
+        const PER_MINUTE_MIN: Length = Length::from_mm(1);
+        let is_strange =
+            if per_revolution { feed > PER_REVOLUTION_MAX } else { feed < PER_MINUTE_MIN && !feed.is_zero() };
+        if is_strange {
+            self.warn("feed-suspicious", word);
+        }
+    }
 }

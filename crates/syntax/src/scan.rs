@@ -262,10 +262,14 @@ impl Scanner<'_> {
             Some(b',') if matches!(line.get(at + 1), Some(b'0'..=b'9')) && typed > 0 => {
                 return self.decimal_comma(address, comma, start, at);
             }
-            Some(b'O' | b'o') if typed > 0 && self.zero_typed_as_letter(at) => {
-                self.fault(FaultKind::LetterO, start, at + 1);
-                self.push(address, comma, start, at + 1, Value::Missing);
-                self.at = at + 1;
+            Some(b'O' | b'o') if typed > 0 && self.zero_typed_as_letter(address, digits, at) => {
+                let mut end = at + 1;
+                while let Some(b'0'..=b'9' | b'.') = line.get(end) {
+                    end += 1;
+                }
+                self.fault(FaultKind::LetterO, start, end);
+                self.push(address, comma, start, end, Value::Missing);
+                self.at = end;
                 return;
             }
             _ if typed == 0 => self.fault(FaultKind::AddressWithoutValue, start, at),
@@ -285,9 +289,10 @@ impl Scanner<'_> {
         self.at = at;
     }
 
-    /// `X1O.` and `Z2O`: the letter cannot be a program number here.
-    fn zero_typed_as_letter(&self, at: usize) -> bool {
-        !self.block.words.is_empty() && !matches!(self.line.get(at + 1), Some(b'0'..=b'9' | b'<' | b' '))
+    /// `X1O.`, `S8O0`: the letter begins no program number here. Behind `N10` or `M99` it may.
+    fn zero_typed_as_letter(&self, address: u8, digits: i64, at: usize) -> bool {
+        let may_begin_a_program = address == b'N' || (address == b'M' && digits == 99);
+        !may_begin_a_program && !matches!(self.line.get(at + 1), Some(b'<' | b' '))
     }
 
     fn expression_value(&mut self, address: u8, comma: bool, start: usize, from: usize, at: usize) {
@@ -634,6 +639,8 @@ mod tests {
     fn mistakes_have_a_place_and_never_stop_the_reader() {
         assert_eq!(words("GO X1."), "G? O? X1e-0. !LetterO@0..2 !AddressWithoutValue@1..2");
         assert_eq!(words("X1.2.3 Z1"), "X? Z1e-0 !TwoPoints@0..6");
+        assert_eq!(words("S8O0 M3"), "S? M3e-0 !LetterO@0..4");
+        assert_eq!(words("M99O0810"), "M99e-0 O810e-0");
         assert_eq!(words("X12,5"), "X? !DecimalComma@0..5");
         assert_eq!(words("X--1"), "X? !TwoSigns@0..4");
         assert_eq!(words("X Z1."), "X? Z1e-0. !AddressWithoutValue@0..1");

@@ -36,7 +36,7 @@ pub(crate) fn result(finding: &Finding, speech: Speech, text: Option<&ProgramTex
     let mut result = json!({
         "ruleId": finding.diagnostic.key,
         "level": level(finding.diagnostic.severity),
-        "message": { "text": format!("{}{hint} {}", words.message, words.remedy) },
+        "message": { "text": format!("{}{hint}. {}", words.message, words.remedy) },
         "properties": { "id": finding.id(speech.messages()) },
     });
     if !finding.file.is_empty() {

@@ -67,7 +67,7 @@ impl Core {
         let (peck, step, peck_letters) =
             if along_z { (lengthwise, cross, letters(b"ZW")) } else { (cross, lengthwise, letters(b"XU")) };
         if call.block.present() & peck_letters == 0 {
-            return Err(self.alarm_at("arc-endpoint-missing", call.word.as_ref()));
+            return Err(self.alarm_at("groove-end-missing", call.word.as_ref()));
         }
         if peck.is_none_or(Length::is_zero) {
             return Err(self.alarm_at("groove-step-zero", call.word.as_ref()));

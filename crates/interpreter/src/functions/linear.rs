@@ -49,7 +49,7 @@ impl Core {
             CornerWords::ChamferAndRadius => b"CLD",
         };
         match strange.iter().find_map(|letter| block.word(*letter)) {
-            Some(word) => Err(self.alarm("illegal-address", word)),
+            Some(word) => Err(self.alarm("corner-letter-illegal", word)),
             None => Ok(()),
         }
     }

@@ -81,6 +81,7 @@ impl Core {
         self.check_spindle();
         let captured = self.capture_figure(call)?;
         self.remember_range(&captured);
+        self.warn_allowance_signs(call, &captured.figure, None, (allowance_x, allowance_z));
         let request = cycles::PatternRequest {
             context: self.cycle_context(feed),
             relief_x: self.settings.pattern_relief_x,

@@ -14,7 +14,7 @@ use turnwright_control::policy::{
 use turnwright_cycles as cycles;
 use turnwright_diagnostics::{Diagnostic, Place};
 use turnwright_syntax::Block;
-use turnwright_units::{Length, Radius};
+use turnwright_units::{Length, Position, Radius, WorkTip};
 
 use super::Function;
 use crate::block::Call;
@@ -110,7 +110,7 @@ impl Core {
         let captured = self.capture_figure(call)?;
         self.remember_range(&captured);
         self.check_first_block(&captured, along, call)?;
-        self.check_figure(&captured, along, (allowance_x, allowance_z), checks)?;
+        self.check_figure(&captured, along, (allowance_x, allowance_z), checks, call)?;
         let policies = &self.control.policies;
         let request = cycles::RoughRequest {
             context: self.cycle_context(feed),
@@ -225,6 +225,7 @@ impl Core {
         along: cycles::CutAlong,
         (allowance_x, allowance_z): (Radius, Length),
         checks: bool,
+        call: &Call<'_>,
     ) -> Result<(), Alarm> {
         if let Some(fault) = cycles::monotony_fault(&captured.figure, along, self.half_increment()) {
             let place = self.element_place(captured, fault.element);
@@ -240,16 +241,47 @@ impl Core {
                 self.say(Diagnostic::warning("figure-not-monotone-warning").at(place).with("name", axis));
             }
         }
+        let warned =
+            self.warn_allowance_signs(call, &captured.figure, Some(along), (allowance_x, allowance_z));
         if let Some(fault) = cycles::start_inside_fault(&captured.figure, along, allowance_x, allowance_z) {
             let place = self.element_place(captured, fault.element);
             if self.settings.figure_check {
                 return Err(self.finish(Diagnostic::alarm("figure-beyond-start").at(place)));
             }
-            if !self.already_said("figure-beyond-start-warning", place.line) {
+            if !warned && !self.already_said("figure-beyond-start-warning", place.line) {
                 self.say(Diagnostic::warning("figure-beyond-start-warning").at(place));
             }
         }
         Ok(())
+    }
+
+    /// Warns about allowances that lead into the part; true when it did. The part lies where the infeed goes, or
+    /// on an axis without infeed towards the furthest point of the figure; an allowance must point back.
+    pub(super) fn warn_allowance_signs(
+        &mut self,
+        call: &Call<'_>,
+        figure: &cycles::Figure,
+        along: Option<cycles::CutAlong>,
+        (allowance_x, allowance_z): (Radius, Length),
+    ) -> bool {
+        let start = figure.start;
+        let way = |is_infeed: bool, way: fn(&cycles::Element, Position<WorkTip>) -> Length| {
+            let reach = if is_infeed { 1 } else { figure.elements.len() };
+            let ways = figure.elements.iter().take(reach).map(|element| way(element, start));
+            ways.max_by_key(|way| way.abs()).unwrap_or_default()
+        };
+        let x = way(along == Some(cycles::CutAlong::Z), |element, start| (element.to.x - start.x).0);
+        let z = way(along == Some(cycles::CutAlong::X), |element, start| element.to.z - start.z);
+        let mut warned = false;
+        for (allowance, way, letter) in [(allowance_x.0, x, b'U'), (allowance_z, z, b'W')] {
+            if allowance.signum() * way.signum() > 0
+                && let Some(word) = call.block.word(letter)
+            {
+                self.warn("allowance-sign", word);
+                warned = true;
+            }
+        }
+        warned
     }
 
     /// The line of a figure's element; its bytes are not at hand any more, so the whole line is meant.

@@ -23,7 +23,9 @@ pub(super) static THREAD: Function = Function::motion("thread", thread).with_let
 const TURN_MILLIDEGREES: u32 = 360_000;
 
 fn thread(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
-    core.refuse_comma_words(call.block)?;
+    if let Some(word) = call.block.words.iter().find(|word| word.comma) {
+        return Err(core.alarm("corner-in-thread", word));
+    }
     let to = core.target(call.block)?;
     let lead = core.lead_in_force(call)?;
     let start_angle = core.start_angle(call)?;
