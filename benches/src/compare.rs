@@ -98,8 +98,27 @@ fn median(costs: &[Cost]) -> Cost {
 fn own(step: &str, file: &Path) -> Result<Cost, String> {
     let program = std::env::current_exe().map_err(|error| error.to_string())?;
     let mut command = Command::new(program);
-    command.arg(step).arg(file);
-    measure(command)
+    let peak = std::env::temp_dir().join("turnwright-bench").join("peak");
+    command.arg(step).arg(file).env(PEAK_FILE, &peak);
+    let cost = measure(command)?;
+    // A child's peak as its parent sees it includes the parent's own: ours is noted by itself.
+    let text = std::fs::read_to_string(&peak).map_err(|error| format!("{}: {error}", peak.display()))?;
+    let kib: f64 = text.trim().parse().map_err(|_| format!("{}: {text}", peak.display()))?;
+    Ok(Cost { memory_mib: kib / 1024.0, ..cost })
+}
+
+/// Names the file that a timed step notes its peak memory in.
+const PEAK_FILE: &str = "TURNWRIGHT_BENCH_PEAK";
+
+/// Notes the peak memory of this process when the comparison asked for it.
+pub fn note_peak() {
+    let Some(file) = std::env::var_os(PEAK_FILE) else { return };
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kib = peak.and_then(|peak| peak.split_whitespace().next()).unwrap_or("0");
+    if let Err(error) = std::fs::write(&file, kib) {
+        eprintln!("{}: {error}", file.display());
+    }
 }
 
 /// LinuxCNC's stand-alone interpreter.

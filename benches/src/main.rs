@@ -40,6 +40,7 @@ fn main() -> ExitCode {
             _ => Err("usage: compare [BLOCKS] | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE"
                 .to_string()),
         };
+    compare::note_peak();
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {

@@ -21,7 +21,7 @@ pub(crate) struct Call<'a> {
     /// The code as written, times ten.
     pub(crate) code: u16,
     /// The code's word; `None` when the code is in force from an earlier block.
-    pub(crate) word: Option<Word>,
+    pub(crate) word: Option<&'a Word>,
 }
 
 /// Letters that every block may have.
@@ -245,7 +245,7 @@ impl Core {
         let call = |word, code, environment| Call { block, environment, code, word };
         match codes.one_shot {
             Some(Code { id, code, word }) => {
-                let word = block.words[usize::from(word)];
+                let word = &block.words[usize::from(word)];
                 if waiting_corner && block.present() & AXES != 0 && !function.in_figure {
                     return Err(self.corner_without_next());
                 }
@@ -261,7 +261,7 @@ impl Core {
                     if waiting_corner && motion != FunctionId::LINEAR {
                         return Err(self.corner_without_next());
                     }
-                    let word = codes.motion.map(|motion| block.words[usize::from(motion.word)]);
+                    let word = codes.motion.map(|motion| &block.words[usize::from(motion.word)]);
                     function.run(self, &mut call(word, self.modal.motion_code, environment))?;
                 }
             }
@@ -356,7 +356,7 @@ impl Core {
         block: &Block,
         environment: &mut dyn Environment,
     ) -> Result<(), Alarm> {
-        id.get().run(self, &mut Call { block, environment, code: 0, word: Some(*word) })
+        id.get().run(self, &mut Call { block, environment, code: 0, word: Some(word) })
     }
 
     fn change_motion(&mut self, id: FunctionId, code: u16) {

@@ -66,7 +66,7 @@ impl Core {
     pub(crate) fn range_words(&self, call: &Call<'_>) -> Result<FigureRange, Alarm> {
         let block = call.block;
         let (Some(first), Some(last)) = (block.word(b'P'), block.word(b'Q')) else {
-            let present = block.word(b'P').or(block.word(b'Q')).or(call.word.as_ref());
+            let present = block.word(b'P').or(block.word(b'Q')).or(call.word);
             return Err(self.alarm_at("cycle-p-or-q-missing", present));
         };
         Ok(FigureRange {

@@ -39,7 +39,9 @@ pub(crate) struct Line {
 #[derive(Debug)]
 pub(crate) struct Text {
     source: SourceId,
+    /// Bytes of the window; only the first `filled` are text.
     buffer: Vec<u8>,
+    filled: usize,
     /// Offset of the first byte of the buffer.
     base: u64,
     /// Start of the next line in the buffer.
@@ -52,7 +54,16 @@ pub(crate) struct Text {
 
 impl Text {
     pub(crate) fn new(source: SourceId) -> Self {
-        Self { source, buffer: Vec::new(), base: 0, at: 0, next_line: 1, is_last: false, head: Vec::new() }
+        Self {
+            source,
+            buffer: Vec::new(),
+            filled: 0,
+            base: 0,
+            at: 0,
+            next_line: 1,
+            is_last: false,
+            head: Vec::new(),
+        }
     }
 
     /// Where the next line begins.
@@ -63,12 +74,12 @@ impl Text {
     /// Goes to another line.
     pub(crate) fn jump(&mut self, to: Cursor) {
         self.next_line = to.line;
-        let end = self.base + self.buffer.len() as u64;
+        let end = self.base + self.filled as u64;
         if to.source == self.source && (self.base..=end).contains(&to.offset) {
             self.at = (to.offset - self.base) as usize;
         } else {
             self.source = to.source;
-            self.buffer.clear();
+            self.filled = 0;
             self.base = to.offset;
             self.at = 0;
             self.is_last = false;
@@ -77,7 +88,7 @@ impl Text {
 
     /// The bytes of the line last read.
     pub(crate) fn bytes(&self, line: &Line) -> &[u8] {
-        let text = if line.is_in_head { &self.head } else { &self.buffer };
+        let text = if line.is_in_head { &self.head } else { &self.buffer[..self.filled] };
         // A line that is no longer in the window is quoted as nothing.
         text.get(line.start..line.end).unwrap_or(&[])
     }
@@ -86,20 +97,20 @@ impl Text {
     #[inline]
     pub(crate) fn next(&mut self, environment: &mut dyn Environment) -> Result<Option<Line>, ReadFault> {
         loop {
-            if let Some(end) = find_line_end(&self.buffer[self.at..], self.is_last) {
+            if let Some(end) = find_line_end(&self.buffer[self.at..self.filled], self.is_last) {
                 let line = self.line(self.at + end.start);
                 self.at += end.next;
                 return Ok(Some(self.limited(line)));
             }
             if self.is_last {
-                if self.at == self.buffer.len() {
+                if self.at == self.filled {
                     return Ok(None);
                 }
-                let line = self.line(self.buffer.len());
-                self.at = self.buffer.len();
+                let line = self.line(self.filled);
+                self.at = self.filled;
                 return Ok(Some(self.limited(line)));
             }
-            if self.buffer.len() - self.at > LINE_BYTES_MAX {
+            if self.filled - self.at > LINE_BYTES_MAX {
                 return self.long_line(environment).map(Some);
             }
             self.fill(environment)?;
@@ -127,19 +138,20 @@ impl Text {
         line
     }
 
-    /// Reads more behind what is there, and lets go of what was read. At the end of the text nothing is let go:
-    /// messages still quote the last line.
+    /// Lets go of what was read and reads more behind what is left.
     fn fill(&mut self, environment: &mut dyn Environment) -> Result<(), ReadFault> {
-        let kept = self.buffer.len();
-        self.buffer.resize(kept + WINDOW_BYTES, 0);
-        let read = environment.read(self.source, self.base + kept as u64, &mut self.buffer[kept..]);
-        self.buffer.truncate(kept + read.unwrap_or(0).min(WINDOW_BYTES));
-        self.is_last = read? == 0;
-        if !self.is_last {
-            self.base += self.at as u64;
-            self.buffer.drain(..self.at);
-            self.at = 0;
+        self.buffer.copy_within(self.at..self.filled, 0);
+        self.base += self.at as u64;
+        self.filled -= self.at;
+        self.at = 0;
+        let wanted = self.filled + WINDOW_BYTES;
+        if self.buffer.len() < wanted {
+            self.buffer.resize(wanted, 0);
         }
+        let offset = self.base + self.filled as u64;
+        let read = environment.read(self.source, offset, &mut self.buffer[self.filled..wanted])?;
+        self.filled += read.min(WINDOW_BYTES);
+        self.is_last = read == 0;
         Ok(())
     }
 
@@ -151,14 +163,15 @@ impl Text {
         (line.start, line.end, line.is_cut, line.is_in_head) = (0, self.head.len(), true, true);
         loop {
             // Half of a CR LF may be the last byte of the piece.
-            self.at = self.buffer.len() - usize::from(self.buffer.last() == Some(&b'\r'));
+            let ends_in_return = self.buffer[..self.filled].last() == Some(&b'\r');
+            self.at = self.filled - usize::from(ends_in_return);
             self.fill(environment)?;
-            if let Some(end) = find_line_end(&self.buffer[self.at..], self.is_last) {
+            if let Some(end) = find_line_end(&self.buffer[self.at..self.filled], self.is_last) {
                 self.at += end.next;
                 return Ok(line);
             }
             if self.is_last {
-                self.at = self.buffer.len();
+                self.at = self.filled;
                 return Ok(line);
             }
         }

@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
-use turnwright_diagnostics::Severity;
+use turnwright_diagnostics::{Diagnostic, Severity};
 
 use crate::arguments::{Check, Format};
 use crate::environment::{ProgramText, STANDARD_INPUT, unreadable};
@@ -94,7 +94,13 @@ pub(crate) fn run(options: &Check, printer: &Printer) -> Result<Status, Fault> {
     let mut candidates = Vec::new();
     for path in &options.files {
         if path.as_os_str() != STANDARD_INPUT && path.is_dir() {
+            let before = candidates.len();
             gather(path, 0, &mut candidates, printer.speech);
+            if candidates.len() == before {
+                // A folder without programs is a mistyped folder, not a clean one.
+                let empty = Diagnostic::error("folder-without-programs");
+                candidates.push(Err(Finding::new(path.display().to_string(), empty).failed()));
+            }
         } else {
             candidates.push(Ok(path.clone()));
         }

@@ -69,12 +69,19 @@ fn rule(key: &str, speech: Speech) -> Value {
     match speech.messages().raw(key, speech.language) {
         Some(words) => json!({
             "id": key,
-            "shortDescription": { "text": words.message },
+            "shortDescription": { "text": without_arguments(&words.message) },
             "fullDescription": { "text": words.cause },
             "help": { "text": words.remedy },
         }),
         None => json!({ "id": key }),
     }
+}
+
+/// A message as the heading of a rule: what differs from case to case becomes an ellipsis.
+fn without_arguments(message: &str) -> String {
+    let mut parts = message.split('{');
+    let first = parts.next().unwrap_or_default().to_string();
+    parts.fold(first, |heading, part| heading + "…" + part.split_once('}').map_or(part, |(_, rest)| rest))
 }
 
 const fn level(severity: Severity) -> &'static str {

@@ -59,7 +59,7 @@ fn arc(core: &mut Core, call: &mut Call<'_>, turn: Turn) -> Result<(), Alarm> {
     let from = core.modal.position;
     let to = core.target(call.block)?;
     let Some(feed) = core.feed_in_force() else {
-        return Err(core.alarm_at("feed-missing", call.word.as_ref()));
+        return Err(core.alarm_at("feed-missing", call.word));
     };
     core.check_spindle();
     let arc = Arc { from, to, turn, feed };
@@ -70,7 +70,7 @@ fn arc(core: &mut Core, call: &mut Call<'_>, turn: Turn) -> Result<(), Alarm> {
         return core.arc_by_centre(&arc, call);
     }
     if core.settings.arc_without_radius_alarm {
-        return Err(core.alarm_at("arc-without-radius", call.word.as_ref()));
+        return Err(core.alarm_at("arc-without-radius", call.word));
     }
     core.warn_block("arc-as-line");
     core.modal.position = to;

@@ -61,16 +61,16 @@ impl Core {
         let lengthwise = call.block.word(b'Q').map(|word| self.groove_length(word)).transpose()?;
         let relief = call.block.word(b'R').map(|word| self.length(word)).transpose()?.unwrap_or(Length::ZERO);
         let Some(feed) = self.feed_in_force() else {
-            return Err(self.alarm_at("feed-missing", call.word.as_ref()));
+            return Err(self.alarm_at("feed-missing", call.word));
         };
         let along_z = peck_axis == cycles::PeckAxis::Z;
         let (peck, step, peck_letters) =
             if along_z { (lengthwise, cross, letters(b"ZW")) } else { (cross, lengthwise, letters(b"XU")) };
         if call.block.present() & peck_letters == 0 {
-            return Err(self.alarm_at("groove-end-missing", call.word.as_ref()));
+            return Err(self.alarm_at("groove-end-missing", call.word));
         }
         if peck.is_none_or(Length::is_zero) {
-            return Err(self.alarm_at("groove-step-zero", call.word.as_ref()));
+            return Err(self.alarm_at("groove-step-zero", call.word));
         }
         self.check_spindle();
         let shifts = if along_z { end.x != start.x } else { end.z != start.z };

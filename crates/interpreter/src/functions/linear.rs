@@ -28,7 +28,7 @@ const CORNERS: u32 = super::letters(CORNER_WORDS);
 fn linear(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     let to = core.target(call.block)?;
     let Some(feed) = core.feed_in_force() else {
-        return Err(core.alarm_at("feed-missing", call.word.as_ref()));
+        return Err(core.alarm_at("feed-missing", call.word));
     };
     core.check_spindle();
     if core.corner.is_some() || call.block.present() & CORNERS != 0 || call.block.has_comma {

@@ -80,7 +80,7 @@ impl Core {
     /// P or Q of the block that runs the cycle: more than zero.
     fn thread_depth(&self, call: &Call<'_>, letter: u8) -> Result<Radius, Alarm> {
         let Some(word) = call.block.word(letter) else {
-            return Err(self.alarm_at("thread-height-or-depth-illegal", call.word.as_ref()));
+            return Err(self.alarm_at("thread-height-or-depth-illegal", call.word));
         };
         let depth = self.cycle_length(word)?;
         if depth.signum() <= 0 {

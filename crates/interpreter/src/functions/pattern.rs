@@ -73,10 +73,10 @@ impl Core {
             self.missing_point(word);
         }
         let Some(feed) = self.feed_in_force() else {
-            return Err(self.alarm_at("feed-missing", call.word.as_ref()));
+            return Err(self.alarm_at("feed-missing", call.word));
         };
         if self.settings.pattern_passes == 0 {
-            return Err(self.alarm_at("pass-count-illegal", call.word.as_ref()));
+            return Err(self.alarm_at("pass-count-illegal", call.word));
         }
         self.check_spindle();
         let captured = self.capture_figure(call)?;

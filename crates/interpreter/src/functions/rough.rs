@@ -100,10 +100,10 @@ impl Core {
             self.missing_point(word);
         }
         if self.settings.cut_depth.signum() <= 0 {
-            return Err(self.alarm_at("cut-depth-illegal", call.word.as_ref()));
+            return Err(self.alarm_at("cut-depth-illegal", call.word));
         }
         let Some(feed) = self.feed_in_force() else {
-            return Err(self.alarm_at("feed-missing", call.word.as_ref()));
+            return Err(self.alarm_at("feed-missing", call.word));
         };
         self.check_spindle();
         let checks = self.checks_monotony(call.block);
@@ -294,33 +294,33 @@ impl Core {
     /// The alarm of the control for what a cycle refused.
     pub(super) fn misuse(&self, fault: cycles::Misuse, call: &Call<'_>) -> Alarm {
         use cycles::Misuse;
-        let letter = |letter: u8| call.block.word(letter).or(call.word.as_ref());
+        let letter = |letter: u8| call.block.word(letter).or(call.word);
         let (key, word) = match fault {
-            Misuse::OutOfRange => ("number-too-long", call.word.as_ref()),
-            Misuse::StartMismatch => ("figure-start-mismatch", call.word.as_ref()),
+            Misuse::OutOfRange => ("number-too-long", call.word),
+            Misuse::StartMismatch => ("figure-start-mismatch", call.word),
             Misuse::NoContour => ("figure-without-contour", letter(b'Q')),
-            Misuse::DepthNotPositive => ("cut-depth-illegal", call.word.as_ref()),
-            Misuse::BelowIncrement => ("depth-below-increment", call.word.as_ref()),
+            Misuse::DepthNotPositive => ("cut-depth-illegal", call.word),
+            Misuse::BelowIncrement => ("depth-below-increment", call.word),
             Misuse::EscapeNegative | Misuse::RetractNegative => ("minus-not-allowed", letter(b'R')),
-            Misuse::NotMonotone(_) => ("figure-not-monotone-x", call.word.as_ref()),
+            Misuse::NotMonotone(_) => ("figure-not-monotone-x", call.word),
             Misuse::PassesZero => ("pass-count-illegal", letter(b'R')),
             Misuse::PeckNegative | Misuse::StepNegative => ("groove-step-negative", letter(b'P')),
-            Misuse::StepZero => ("groove-step-zero", call.word.as_ref()),
+            Misuse::StepZero => ("groove-step-zero", call.word),
             Misuse::ReliefNegative => ("groove-relief-negative", letter(b'R')),
             Misuse::NoThread => ("thread-length-illegal", letter(b'Z')),
             Misuse::LeadNotPositive => ("lead-missing", letter(b'F')),
             Misuse::HeightNotPositive => ("thread-height-or-depth-illegal", letter(b'P')),
             Misuse::FirstDepthNotPositive => ("thread-height-or-depth-illegal", letter(b'Q')),
             Misuse::MinDepthNegative | Misuse::MinDepthAboveHeight => {
-                ("thread-minimum-depth-illegal", call.word.as_ref())
+                ("thread-minimum-depth-illegal", call.word)
             }
             Misuse::AllowanceNegative | Misuse::AllowanceNotBelowHeight => {
                 ("thread-finishing-allowance-illegal", letter(b'P'))
             }
-            Misuse::FinishingPassesZero => ("thread-finishing-passes-illegal", call.word.as_ref()),
+            Misuse::FinishingPassesZero => ("thread-finishing-passes-illegal", call.word),
             Misuse::NoseAngle => ("thread-angle-illegal", letter(b'P')),
             Misuse::ThreadTooShort => ("thread-length-illegal", letter(b'Z')),
-            Misuse::RunOutNegative | Misuse::RunOutAngle => ("run-out-illegal", call.word.as_ref()),
+            Misuse::RunOutNegative | Misuse::RunOutAngle => ("run-out-illegal", call.word),
         };
         self.alarm_at(key, word)
     }

@@ -46,7 +46,7 @@ fn box_cycle(core: &mut Core, call: &mut Call<'_>, first: cycles::FirstAxis) -> 
     core.refuse_comma_words(call.block)?;
     let end = core.single_cycle_words(call, first == cycles::FirstAxis::X)?;
     let Some(feed) = core.feed_in_force() else {
-        return Err(core.alarm_at("feed-missing", call.word.as_ref()));
+        return Err(core.alarm_at("feed-missing", call.word));
     };
     core.check_spindle();
     let taper = core.modal.cycle.taper;
@@ -132,7 +132,7 @@ impl Core {
         if !cycles::taper_crosses_start(first, self.modal.position, end, taper) {
             return Ok(());
         }
-        let word = call.block.word(b'R').or(call.word.as_ref()).copied();
+        let word = call.block.word(b'R').or(call.word).copied();
         match self.control.policies.taper_sign {
             TaperSign::Alarm => Err(self.alarm_at("taper-sign-illegal", word.as_ref())),
             TaperSign::Warn => {

@@ -39,7 +39,7 @@ impl Core {
     pub(super) fn lead_in_force(&self, call: &Call<'_>) -> Result<Lead, Alarm> {
         match self.modal.feed {
             Some(feed) if feed.signum() > 0 => Ok(Lead(feed)),
-            _ => Err(self.alarm_at("lead-missing", call.block.word(b'F').or(call.word.as_ref()))),
+            _ => Err(self.alarm_at("lead-missing", call.block.word(b'F').or(call.word))),
         }
     }
 
