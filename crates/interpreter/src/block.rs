@@ -75,7 +75,7 @@ impl Core {
     ) -> Result<(), Alarm> {
         match self.read_block(block, environment)? {
             Read::Blank => Ok(()),
-            Read::End => self.end_of_record(block.is_percent),
+            Read::End => self.end_of_record(),
             Read::Block => {
                 self.count_block()?;
                 self.execute(block, environment)?;
@@ -466,7 +466,7 @@ impl Core {
         }
         if !self.expects_program_number {
             // The next program begins here: the one before had no end.
-            return self.end_of_record(false);
+            return self.end_of_record();
         }
         if number == 0
             && self.control.policies.decimal_rule == turnwright_control::policy::DecimalRule::ByParameter

@@ -218,7 +218,7 @@ impl Core {
     }
 
     /// `%`, the next program, or the end of the text, without an end of program before it.
-    pub(crate) fn end_of_record(&mut self, _is_percent: bool) -> Result<(), Alarm> {
+    pub(crate) fn end_of_record(&mut self) -> Result<(), Alarm> {
         if self.corner.is_some() {
             return Err(self.corner_without_next());
         }

@@ -109,6 +109,8 @@ pub(crate) struct Core {
     pub(crate) corner: Option<PendingCorner>,
     /// First and last sequence numbers of figures that were roughed.
     pub(crate) roughed: Vec<(u32, u32)>,
+    /// Lines of figures that were finished before anything roughed them.
+    pub(crate) finished_first: Vec<u32>,
     pub(crate) last_spindle: Option<turnwright_canon::Action>,
     pub(crate) blocks_run: u64,
     pub(crate) cycle_moves: u64,
@@ -196,6 +198,7 @@ impl Interpreter {
             capture: None,
             corner: None,
             roughed: Vec::new(),
+            finished_first: Vec::new(),
             last_spindle: None,
             blocks_run: 0,
             cycle_moves: 0,

@@ -23,6 +23,7 @@ fn finishing(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     let range = core.range_words(call)?;
     core.compare_with_roughing(&range);
     let (first, _) = core.find_range(&range, call)?;
+    core.remember_finished(first.line);
     core.start_finish(first, range, call.code, call.environment)
 }
 
@@ -32,6 +33,14 @@ impl Core {
         match b"XZUW".iter().find_map(|letter| call.block.word(*letter)) {
             Some(word) => Err(self.alarm("cycle-word-illegal", word)),
             None => Ok(()),
+        }
+    }
+
+    /// A figure that is finished while nothing was roughed yet; roughing it later is worth a warning.
+    fn remember_finished(&mut self, line: u32) {
+        const REMEMBERED: usize = 16;
+        if self.roughed.is_empty() && self.finished_first.len() < REMEMBERED {
+            self.finished_first.push(line);
         }
     }
 

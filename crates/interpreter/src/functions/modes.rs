@@ -81,7 +81,7 @@ fn surface_speed(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     if core.modal.rpm_max.is_none()
         && let Some(word) = call.word
     {
-        core.warn("surface-speed-without-limit", &word);
+        core.warn("surface-speed-without-limit", word);
     }
     Ok(())
 }

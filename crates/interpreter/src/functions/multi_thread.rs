@@ -99,6 +99,10 @@ impl Core {
         }
         let lead = self.lead_in_force(call)?;
         self.check_thread_spindle()?;
+        if (self.modal.position.x - end.x).0.abs() < height.0 {
+            // The crest lies further out than the start: the first infeed would lead away from the work.
+            self.warn_block("thread-start-inside");
+        }
         let settings = &self.settings;
         let request = cycles::ThreadRequest {
             context: self.cycle_context(Feed::PerRevolution(FeedPerRevolution(lead.0))),

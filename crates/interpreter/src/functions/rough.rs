@@ -154,6 +154,9 @@ impl Core {
     /// The finishing cycle should name the same figure.
     pub(super) fn remember_range(&mut self, captured: &Captured) {
         const REMEMBERED: usize = 3;
+        if self.finished_first.contains(&captured.first_place.line) {
+            self.warn_block("finishing-before-roughing");
+        }
         if self.roughed.len() == REMEMBERED {
             self.roughed.remove(0);
         }
