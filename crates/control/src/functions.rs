@@ -73,7 +73,7 @@ impl FunctionEntry {
         Group(self.group.parse().unwrap_or(0))
     }
 
-    /// Whether a control has it.
+    /// Whether a control has it, by the name of its code table.
     pub fn is_on(&self, control: &str) -> bool {
         self.only.as_ref().is_none_or(|only| only.iter().any(|name| name == control))
             && !self.not_on.iter().any(|name| name == control)
@@ -126,7 +126,14 @@ impl Functions {
         self.entries.get(name)
     }
 
-    /// The function that a code (times ten) names on a control.
+    /// Whether any entry says something about a control.
+    pub fn knows(&self, control: &str) -> bool {
+        self.entries
+            .values()
+            .any(|entry| entry.only.iter().flatten().chain(&entry.not_on).any(|name| name == control))
+    }
+
+    /// The function that a code (times ten) names on a control, by the name of its code table.
     pub fn by_code(&self, code: u16, system: CodeSystem, control: &str) -> Option<(&str, &FunctionEntry)> {
         self.iter().find(|(_, entry)| {
             entry.is_on(control)

@@ -39,6 +39,8 @@ const fn embedded_default() -> &'static str {
 pub struct Control {
     /// Its name, as users type it.
     pub name: &'static str,
+    /// Whose functions it has: its own name when the code table says something about it, else its base's.
+    pub code_table: &'static str,
     /// Its name, as people write it.
     pub title: String,
     /// One line about it, English and Chinese.
@@ -112,10 +114,16 @@ impl Control {
         let wanted = name.trim().to_ascii_lowercase().replace(['_', ' '], "-");
         let found = embedded::CONTROLS.iter().find(|(known, _)| *known == wanted);
         let Some((name, text)) = found else { return Err(unknown(name)) };
+        Self::define(name, text)
+    }
+
+    /// A control from the text of its definition.
+    fn define(name: &'static str, text: &str) -> Result<Self, ControlFault> {
         let mut file = read(name, text)?;
         if file.r#abstract {
             return Err(unknown(name));
         }
+        let mut lineage = vec![name];
         let summary = file.summary.take();
         // Nearest first: what is said nearer wins.
         let mut base = file.base.clone();
@@ -127,6 +135,7 @@ impl Control {
                 return Err(ControlFault::Data(format!("base {name} does not exist")));
             };
             let above = read(name, text)?;
+            lineage.push(*name);
             file.parameter_map = file.parameter_map.or(above.parameter_map);
             file.alarm_ids = file.alarm_ids.or(above.alarm_ids);
             for (own, from) in [
@@ -144,8 +153,11 @@ impl Control {
         let fault = |error: toml::de::Error| ControlFault::Data(format!("{name}: {error}"));
         let summary = summary.map_or_else(Default::default, |words| [words.en, words.zh]);
         let map = file.parameter_map.unwrap_or_default();
+        let functions = Functions::load();
+        let code_table = lineage.into_iter().find(|name| functions.knows(name)).unwrap_or(name);
         Ok(Self {
             name,
+            code_table,
             title: file.title.unwrap_or_else(|| (*name).to_string()),
             summary,
             policies: file.policies.try_into().map_err(fault)?,
@@ -192,8 +204,24 @@ mod tests {
             assert_eq!(control.name, name);
             assert!(!control.summary[0].is_empty() && !control.summary[1].is_empty(), "{name}");
         }
-        assert_eq!(control_names().len(), 8);
+        assert!(control_names().len() >= 8);
         assert!(control_names().contains(&DEFAULT_CONTROL));
+    }
+
+    #[test]
+    fn adding_a_control_is_one_file() {
+        let text = "base = \"fanuc-0i-tf\"\ntitle = \"Our lathe\"\n[policies]\nescape-speed = \"rapid\"\n";
+        let ours = Control::define("our-lathe", text).expect("a definition");
+        let base = Control::load("fanuc-0i-tf").expect("a control");
+        assert_eq!(ours.policies.escape_speed, policy::EscapeSpeed::Rapid);
+        assert_eq!(ours.policies.arc_end_error, base.policies.arc_end_error);
+        let codes = |control: &Control| -> Vec<&str> {
+            let table = Functions::load().iter();
+            table.filter(|(_, entry)| entry.is_on(control.code_table)).map(|(name, _)| name).collect()
+        };
+        assert_eq!(codes(&ours), codes(&base));
+        assert!(codes(&base).len() > 50);
+        assert!(matches!(Control::define("our-lathe", "base = \"none\""), Err(ControlFault::Data(_))));
     }
 
     #[test]

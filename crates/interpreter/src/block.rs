@@ -336,7 +336,7 @@ impl Core {
     fn refuse_code(&self, code: u16, word: &Word) -> Alarm {
         let functions = turnwright_control::Functions::load();
         let quote = self.quote(word.start, word.end);
-        match functions.by_code(code, self.dispatch.system, self.control.name) {
+        match functions.by_code(code, self.dispatch.system, self.control.code_table) {
             Some((_, entry)) => {
                 let name = entry.name(turnwright_control::Language::English).to_string();
                 let diagnostic = Diagnostic::error("not-supported-yet").at(self.place(word));

@@ -1,7 +1,7 @@
 //! Limits that keep any program within bounded time and memory. Each has its own diagnostic.
 
 /// Blocks executed in one run (`block-limit-reached`).
-pub const BLOCKS_MAX: u64 = 100_000_000;
+pub const BLOCKS_MAX: u64 = 30_000_000;
 
 /// Moves made by one cycle block (`cycle-move-limit`).
 pub const CYCLE_MOVES_MAX: u64 = 5_000_000;

@@ -60,7 +60,7 @@ fn summary(control: &Control, speech: Speech) -> &str {
 /// Codes and names of the functions that a control has.
 fn codes(control: &Control, speech: Speech) -> Vec<(String, String)> {
     let system = code_system(control);
-    let functions = speech.functions().iter().filter(|(_, entry)| entry.is_on(control.name));
+    let functions = speech.functions().iter().filter(|(_, entry)| entry.is_on(control.code_table));
     let mut codes: Vec<_> = functions
         .filter_map(|(_, entry)| {
             Some((entry.code(system)?.to_string(), entry.name(speech.language).to_string()))

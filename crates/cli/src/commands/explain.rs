@@ -108,7 +108,7 @@ fn functions(asked: &str, control: &Control, speech: Speech) -> Vec<Answer> {
         return vec![function(asked, entry, control, speech)];
     }
     let Some(code) = wanted else { return Vec::new() };
-    if let Some((name, entry)) = table.by_code(code, system, control.name) {
+    if let Some((name, entry)) = table.by_code(code, system, control.code_table) {
         return vec![function(name, entry, control, speech)];
     }
     // Not here: what it is elsewhere, on other controls or in the other code tables.
@@ -146,7 +146,7 @@ fn function(name: &str, entry: &FunctionEntry, control: &Control, speech: Speech
         on.join(", ")
     };
     paragraphs.push(("label-on", on));
-    let state = if !entry.is_on(control.name) || entry.code(system).is_none() {
+    let state = if !entry.is_on(control.code_table) || entry.code(system).is_none() {
         speech.fill("not-on-control", &[("control", control.name)])
     } else if implemented_functions().any(|known| known == name) {
         speech.get("is-executed").to_string()

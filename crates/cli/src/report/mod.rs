@@ -117,7 +117,8 @@ impl RunReport {
 /// What a machinist would call an operation.
 fn operation_name(operation: &Operation, control: &Control, speech: Speech) -> String {
     let label = operation.label.map(|label| label.0);
-    let of_code = label.and_then(|code| speech.functions().by_code(code, code_system(control), control.name));
+    let of_code =
+        label.and_then(|code| speech.functions().by_code(code, code_system(control), control.code_table));
     match (of_code, operation.kind) {
         (Some((_, entry)), _) => entry.name(speech.language).to_string(),
         (None, OperationKind::Standing) => speech.get("operation-standing").to_string(),

@@ -247,7 +247,7 @@ impl Dispatch {
         let mut table = Box::new([0u8; 10_000]);
         for (place, function) in ALL.iter().enumerate() {
             let Some(entry) = functions.get(function.name) else { continue };
-            if !entry.is_on(control.name) {
+            if !entry.is_on(control.code_table) {
                 continue;
             }
             for code in entry.code(system).into_iter().flat_map(|text| text.split('/')).filter_map(parse_code)
