@@ -450,30 +450,4 @@ mod tests {
         write_command(&mut out, &Command { action, origin: Origin::line(1) }, 2);
         assert!(out.starts_with(br#"{"op":"rapid","x":0,"z":0,"#));
     }
-
-    /// `cargo test --release -p turnwright-export -- --ignored --nocapture speed`
-    #[test]
-    #[ignore = "a measurement"]
-    #[allow(clippy::disallowed_methods, clippy::disallowed_macros)]
-    fn speed_of_the_writer() {
-        let feed = Feed::PerRevolution(FeedPerRevolution(Length::from_nm(250_000)));
-        let cycle = Some(CycleOrigin { label: CycleLabel(710), pass: 12, phase: Phase::Cut });
-        let origin = Origin { sequence: Some(120), program: Some(1), cycle, ..Origin::line(345) };
-        let commands: Vec<Command> = (0..10_000i64)
-            .map(|i| Command {
-                action: Action::Feed { to: at(40_000 + i * 7, -i * 13), shape: Shape::Line, feed },
-                origin,
-            })
-            .collect();
-        let mut out = Vec::with_capacity(4 << 20);
-        let start = std::time::Instant::now();
-        for _ in 0..500 {
-            out.clear();
-            for command in &commands {
-                write_command(&mut out, command, 3);
-            }
-        }
-        let per_s = 5e6 / start.elapsed().as_secs_f64();
-        eprintln!("{:.1} million moves a second, {} bytes a move", per_s / 1e6, out.len() / 10_000);
-    }
 }
