@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use turnwright_diagnostics::{Argument, Diagnostic};
 
+use crate::Functions;
 use crate::policy::AlarmIds;
 
 /// A language that every text exists in.
@@ -91,7 +92,7 @@ impl Messages {
             let key = diagnostic.key.to_string();
             return MessageText { message: key, cause: String::new(), remedy: String::new() };
         };
-        let fill = |text: &str| fill(text, &diagnostic.arguments);
+        let fill = |text: &str| fill(text, &diagnostic.arguments, language);
         MessageText { message: fill(&raw.message), cause: fill(&raw.cause), remedy: fill(&raw.remedy) }
     }
 
@@ -112,7 +113,7 @@ fn plain_id(id: &str) -> String {
     digits.to_string()
 }
 
-fn fill(text: &str, arguments: &[(&'static str, Argument)]) -> String {
+fn fill(text: &str, arguments: &[(&'static str, Argument)], language: Language) -> String {
     let mut out = String::with_capacity(text.len() + 16);
     let mut rest = text;
     while let Some(open) = rest.find('{') {
@@ -124,6 +125,10 @@ fn fill(text: &str, arguments: &[(&'static str, Argument)]) -> String {
             Some((_, Argument::Text(value))) => out.push_str(value),
             Some((_, Argument::Integer(value))) => out.push_str(&value.to_string()),
             Some((_, Argument::Length(value))) => out.push_str(&value.to_string()),
+            Some((_, Argument::Function(key))) => {
+                let entry = Functions::load().get(key);
+                out.push_str(entry.map_or(key, |entry| entry.name(language)));
+            }
             None => out.push('?'),
         }
         rest = &rest[close + 1..];

@@ -47,6 +47,8 @@ pub enum Argument {
     Integer(i64),
     /// A length, shown in millimetres.
     Length(Length),
+    /// A function of the code table by its key, shown by its name in the language of the message.
+    Function(Box<str>),
 }
 
 impl From<&str> for Argument {

@@ -73,7 +73,7 @@ impl Core {
             });
         }
         if code::FOR_LATER.contains(&number) {
-            return Err(self.not_supported("an auxiliary function of the control itself", word));
+            return Err(self.not_supported("auxiliary-of-the-control", word));
         }
         if auxiliary.count > 0 {
             if !self.settings.several_auxiliary {

@@ -337,11 +337,7 @@ impl Core {
         let functions = turnwright_control::Functions::load();
         let quote = self.quote(word.start, word.end);
         match functions.by_code(code, self.dispatch.system, self.control.code_table) {
-            Some((_, entry)) => {
-                let name = entry.name(turnwright_control::Language::English).to_string();
-                let diagnostic = Diagnostic::error("not-supported-yet").at(self.place(word));
-                self.finish(diagnostic.with("code", quote.clone()).with("word", quote).with("name", name))
-            }
+            Some((name, _)) => self.not_supported(name, word),
             None => {
                 let diagnostic = Diagnostic::alarm("unusable-g-code").at(self.place(word));
                 self.finish(diagnostic.with("code", quote.clone()).with("word", quote))
@@ -395,9 +391,7 @@ impl Core {
     #[cold]
     fn comma_without_line(&self, block: &Block) -> Alarm {
         match block.words.iter().find(|word| word.comma) {
-            Some(word) if word.address == b'A' => {
-                self.not_supported("direct drawing dimension programming (,A)", word)
-            }
+            Some(word) if word.address == b'A' => self.not_supported("drawing-dimensions", word),
             word => self.alarm_at("illegal-address", word),
         }
     }

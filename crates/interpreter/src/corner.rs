@@ -5,7 +5,7 @@
 //! direction of the next line. Source: automatic chamfer and corner R of the linear move.
 
 use turnwright_canon::{Action, Shape, Turn};
-use turnwright_diagnostics::{Diagnostic, Place};
+use turnwright_diagnostics::{Argument, Diagnostic, Place};
 use turnwright_syntax::{Block, Word};
 use turnwright_units::{Feed, Length, Position, Radius, WorkTip};
 
@@ -78,7 +78,7 @@ impl Core {
         use turnwright_control::policy::CornerWords;
         if self.control.policies.corner_words == CornerWords::LengthAndFillet {
             return match block.word(b'L').or(block.word(b'D')) {
-                Some(word) => Err(self.not_supported("automatic corners by L and D", word)),
+                Some(word) => Err(self.not_supported("corners-by-length-and-fillet", word)),
                 None => Ok(None),
             };
         }
@@ -90,7 +90,7 @@ impl Core {
                 (b'C', false) if self.settings.plain_corner_letters => Form::Chamfer,
                 (b'I' | b'K', false) => Form::Chamfer,
                 (b'A', true) => {
-                    return Err(self.not_supported("direct drawing dimension programming (,A)", word));
+                    return Err(self.not_supported("drawing-dimensions", word));
                 }
                 (_, true) => return Err(self.alarm("illegal-address", word)),
                 _ => continue,
@@ -103,11 +103,12 @@ impl Core {
         Ok(found)
     }
 
-    /// Something that a later version does; named, never passed over.
-    pub(crate) fn not_supported(&self, name: &str, word: &Word) -> Alarm {
+    /// Something that a later version does, by its key in the table of functions: named, never passed over.
+    pub(crate) fn not_supported(&self, function: &str, word: &Word) -> Alarm {
         let quote = self.quote(word.start, word.end);
         let diagnostic = Diagnostic::error("not-supported-yet").at(self.place(word));
-        self.finish(diagnostic.with("code", quote.clone()).with("word", quote).with("name", name))
+        let diagnostic = diagnostic.with("code", quote.clone()).with("word", quote);
+        self.finish(diagnostic.with("name", Argument::Function(function.into())))
     }
 
     /// A linear block that has a corner word, or follows one that has.
@@ -140,7 +141,7 @@ impl Core {
             (true, false) => Axis::X,
             (false, true) => Axis::Z,
             (true, true) if word.comma => {
-                return Err(self.not_supported("a corner between slanting lines (,C and ,R)", &word));
+                return Err(self.not_supported("drawing-dimensions", &word));
             }
             (true, true) => return Err(self.alarm("taper-in-corner-block", &word)),
             (false, false) => return Err(self.alarm("corner-longer-than-move", &word)),
@@ -195,8 +196,8 @@ impl Core {
                 let diagnostic = Diagnostic::error("not-supported-yet").at(corner.place);
                 let diagnostic =
                     diagnostic.with("code", corner.quote.clone()).with("word", corner.quote.clone());
-                let name = "a corner between slanting lines (,C and ,R)";
-                return Err(self.finish(diagnostic.with("name", name).near(self.block_place(), "next-block")));
+                let diagnostic = diagnostic.with("name", Argument::Function("drawing-dimensions".into()));
+                return Err(self.finish(diagnostic.near(self.block_place(), "next-block")));
             }
             return Err(self.corner_alarm("no-perpendicular-after-corner", corner));
         }
