@@ -93,6 +93,7 @@ impl Core {
         if (is_spindle && auxiliary.spindle.is_some()) || (is_flow && auxiliary.flow.is_some()) {
             return Err(self.alarm("auxiliary-combination-illegal", word));
         }
+        self.modal.in_force.auxiliary = Some(number);
         let flow = |flow| Some((flow, place as u8));
         match number {
             code::STOP => auxiliary.flow = flow(Flow::Stop),

@@ -209,6 +209,7 @@ impl Core {
                 b'G' => self.sort_code(block, place, &mut codes)?,
                 b'M' => self.sort_auxiliary(block, place, &mut auxiliary)?,
                 b'N' => self.sequence_number(word)?,
+                b'B' | b'D' | b'H' => self.modal.in_force.rare_word(word),
                 b'O' => self.program_number(word, &auxiliary)?,
                 _ => {}
             }
@@ -250,6 +251,7 @@ impl Core {
                     return Err(self.corner_without_next());
                 }
                 id.get().run(self, &mut call(Some(word), code, environment))?;
+                self.modal.in_force.code(id, code, &self.dispatch);
                 if !function.keeps_single_cycle {
                     self.forget_single_cycle();
                 }
@@ -352,7 +354,10 @@ impl Core {
         block: &Block,
         environment: &mut dyn Environment,
     ) -> Result<(), Alarm> {
-        id.get().run(self, &mut Call { block, environment, code: 0, word: Some(word) })
+        let code = self.code(word)?;
+        id.get().run(self, &mut Call { block, environment, code, word: Some(word) })?;
+        self.modal.in_force.code(id, code, &self.dispatch);
+        Ok(())
     }
 
     fn change_motion(&mut self, id: FunctionId, code: u16) {
@@ -361,6 +366,7 @@ impl Core {
             self.forget_single_cycle();
         }
         self.modal.motion_code = code;
+        self.modal.in_force.code(id, code, &self.dispatch);
     }
 
     /// Every letter must belong to something in the block.
@@ -443,6 +449,7 @@ impl Core {
         match u32::try_from(number.digits) {
             Ok(value) if value < 10u32.pow(u32::from(self.control.limits.sequence_digits)) => {
                 self.at.sequence = Some(value);
+                self.modal.in_force.sequence = Some(value);
             }
             _ => return Err(self.alarm("number-too-long", word)),
         }

@@ -21,6 +21,7 @@ mod corner;
 mod figure;
 mod flow;
 mod functions;
+mod in_force;
 pub mod limits;
 mod machine;
 mod modal;
@@ -32,6 +33,7 @@ mod tool;
 mod words;
 
 pub use functions::implemented_functions;
+pub use in_force::GROUPS;
 pub use machine::{Interpreter, Options, Step, SyncReason};
 pub use text::LINE_BYTES_MAX;
 use turnwright_diagnostics::SourceId;

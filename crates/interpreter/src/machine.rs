@@ -14,6 +14,7 @@ use crate::corner::PendingCorner;
 use crate::figure::FigureRange;
 use crate::flow::{Frame, ProgramIndex};
 use crate::functions::{Dispatch, FunctionId};
+use crate::in_force::{InForce, MOTION};
 use crate::limits;
 use crate::modal::{FeedMode, Modal, Settings, SingleCycle, SpeedMode};
 use crate::moves::ActiveCycle;
@@ -129,7 +130,7 @@ pub(crate) struct Core {
 /// Runs one program.
 #[derive(Debug)]
 pub struct Interpreter {
-    core: Core,
+    pub(crate) core: Core,
     block: Block,
     alarm: Option<Alarm>,
 }
@@ -155,7 +156,7 @@ impl Interpreter {
         let modal = Modal {
             position: Position::new(Radius::ZERO, Length::ZERO),
             motion: if bit("linear-at-power-on") { FunctionId::LINEAR } else { FunctionId::RAPID },
-            motion_code: 0,
+            motion_code: dispatch.codes_at_power_on[MOTION].unwrap_or_default(),
             is_inch: bit("inch-input"),
             feed_mode: if bit("feed-per-minute-at-power-on") {
                 FeedMode::PerMinute
@@ -173,7 +174,8 @@ impl Interpreter {
             work: 0,
             preset: Displacement::new(Radius::ZERO, Length::ZERO),
             cycle: SingleCycle::default(),
-            is_incremental: false,
+            is_incremental: bit("incremental-at-power-on") && !dispatch.has_incremental_words,
+            in_force: InForce::new(dispatch.codes_at_power_on),
         };
         let start = Cursor { source, offset: 0, line: 1 };
         let mut core = Core {

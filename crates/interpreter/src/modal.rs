@@ -7,6 +7,7 @@ use turnwright_units::{
 };
 
 use crate::functions::FunctionId;
+use crate::in_force::InForce;
 
 /// Feed per minute or per revolution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +60,8 @@ pub(crate) struct Modal {
     pub(crate) cycle: SingleCycle,
     /// Systems B and C: X and Z are increments.
     pub(crate) is_incremental: bool,
+    /// The codes and values that programs and displays can read.
+    pub(crate) in_force: InForce,
 }
 
 impl Modal {

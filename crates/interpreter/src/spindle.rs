@@ -14,6 +14,7 @@ impl Core {
     /// An S word in the speed mode in force.
     pub(crate) fn speed_word(&mut self, word: &Word) -> Result<(), Alarm> {
         let value = self.speed_value(word)?;
+        self.modal.in_force.speed = Some(value);
         match self.modal.speed_mode {
             SpeedMode::Constant => self.modal.rpm = Rpm(value),
             SpeedMode::Surface if self.modal.is_inch => {

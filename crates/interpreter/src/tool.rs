@@ -14,6 +14,7 @@ impl Core {
     /// A tool word.
     pub(crate) fn tool_word(&mut self, word: &Word) -> Result<(), Alarm> {
         let number = self.whole(word, 99_999_999)?;
+        self.modal.in_force.tool = Some(number);
         let split = if self.settings.offset_digits_one { 10 } else { 100 };
         let (tool, offset) = (number / split, number % split);
         if offset > self.control.limits.offset_number_max {

@@ -24,6 +24,7 @@ use turnwright_control::{CodeSystem, Control, Functions, parse_code};
 use turnwright_syntax::Block;
 
 use crate::block::Call;
+use crate::in_force::{GROUPS, codes_at_power_on};
 use crate::machine::Core;
 use crate::report::Alarm;
 
@@ -223,6 +224,10 @@ pub fn implemented_functions() -> impl Iterator<Item = &'static str> {
 pub(crate) struct Dispatch {
     /// By code times ten; 0 is no function, else its place in the list plus one.
     table: Box<[u8; 10_000]>,
+    /// Modal group by place in the list.
+    groups: [u8; ALL.len()],
+    /// By group, times ten.
+    pub(crate) codes_at_power_on: [Option<u16>; GROUPS],
     pub(crate) system: CodeSystem,
     /// U and W are increments of X and Z.
     pub(crate) has_incremental_words: bool,
@@ -245,8 +250,10 @@ impl Dispatch {
         };
         let functions = Functions::load();
         let mut table = Box::new([0u8; 10_000]);
+        let mut groups = [0; ALL.len()];
         for (place, function) in ALL.iter().enumerate() {
             let Some(entry) = functions.get(function.name) else { continue };
+            groups[place] = entry.group().0;
             if !entry.is_on(control.code_table) {
                 continue;
             }
@@ -255,7 +262,14 @@ impl Dispatch {
                 table[usize::from(code)] = place as u8 + 1;
             }
         }
-        Self { table, system, has_incremental_words: system == CodeSystem::A }
+        let codes_at_power_on = codes_at_power_on(&control.parameters, system, control.code_table);
+        Self { table, groups, codes_at_power_on, system, has_incremental_words: system == CodeSystem::A }
+    }
+
+    /// The modal group of a function, 0 for one-shot codes.
+    #[inline]
+    pub(crate) fn group(&self, id: FunctionId) -> u8 {
+        self.groups[usize::from(id.0)]
     }
 
     /// The function that a code (times ten, below 10,000) names.
