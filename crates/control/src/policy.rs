@@ -42,6 +42,27 @@ policies! {
         /// The absolute one counts wherever it stands.
         AbsoluteWins,
     }
+    /// M codes that meet in one block although they belong to one group, or although one has to stand alone.
+    auxiliary_combination: AuxiliaryCombination {
+        /// The last of a group acts; beside a stop or an end nothing else does.
+        LastActs,
+        /// Refused.
+        Alarm,
+    }
+    /// When spindle stop and coolant off act in a block with a move. Stops, ends and calls always act behind it.
+    stopping_codes: StoppingCodes {
+        /// Behind the move: nearly every machine's logic waits for its end.
+        BehindTheMove,
+        /// With its start, as all other M codes do.
+        WithTheMove,
+    }
+    /// What a reset or program end does to the speed limit of constant surface speed.
+    speed_limit_at_reset: SpeedLimitAtReset {
+        /// It stays.
+        Kept,
+        /// It is cancelled.
+        Cancelled,
+    }
     /// An arc whose end point does not lie on the circle given by its centre.
     arc_end_error: ArcEndError {
         /// An arc with the start radius, then a straight line to the end point.

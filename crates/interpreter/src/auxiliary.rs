@@ -1,13 +1,20 @@
-//! M words: which act before the move, which after it, and which only the machine's own logic knows.
+//! M words: which act at the start of the move, which behind it, and which only the machine's own logic knows.
 //!
-//! Source: the M functions that the control itself acts on, both families. An unknown M is given on; it does
-//! not stop the program.
+//! Program stops, ends and calls wait for the end of the move; so do spindle stop and coolant off, unless the
+//! policy gives them out with the move. Everything else acts at its start. One M word counts in a block, the last
+//! one; by parameter up to three, of which stops and ends must stand alone. An unknown M is given on; it does not
+//! stop the program.
+//!
+//! Source: the M functions that the control itself acts on and the order of actions in a block, both families.
 
 use turnwright_canon::{Action, Coolant, SpindleState};
-use turnwright_syntax::Block;
+use turnwright_control::policy::{AuxiliaryCombination, StoppingCodes};
+use turnwright_syntax::{Block, Word};
 
-use crate::machine::Core;
+use crate::Environment;
+use crate::machine::{BlockPlace, Core};
 use crate::report::Alarm;
+use crate::reset::Ending;
 
 /// What waits for the end of the block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,14 +26,28 @@ pub(crate) enum Flow {
     Return,
 }
 
+/// What still has to be done for a block when its cycle has run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Waiting {
+    auxiliary: Auxiliary,
+    at: BlockPlace,
+    /// Calls in work when the block began.
+    depth: usize,
+}
+
+/// M words that one block may have where the parameter allows several.
+const SEVERAL: u8 = 3;
+
 /// The M words of a block.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Auxiliary {
     pub(crate) spindle: Option<SpindleState>,
     coolant: Option<Coolant>,
     /// Numbers of other M words; as many as `other_count`.
-    others: [u32; 3],
+    others: [u32; SEVERAL as usize],
     other_count: u8,
+    /// Spindle stop or coolant off wait for the end of the move.
+    acts_behind: bool,
     /// What directs the program, and its place among the words.
     pub(crate) flow: Option<(Flow, u8)>,
     pub(crate) returns: bool,
@@ -61,7 +82,7 @@ impl Core {
         auxiliary: &mut Auxiliary,
     ) -> Result<(), Alarm> {
         let word = &block.words[place];
-        let number = self.whole(word, 99_999_999)?;
+        let number = self.whole(word, self.settings.auxiliary_max)?;
         let is_flow = matches!(
             number,
             code::STOP | code::OPTIONAL_STOP | code::END | code::END_AND_REWIND | code::CALL | code::RETURN
@@ -75,25 +96,18 @@ impl Core {
         if code::FOR_LATER.contains(&number) {
             return Err(self.not_supported("auxiliary-of-the-control", word));
         }
-        if auxiliary.count > 0 {
-            if !self.settings.several_auxiliary {
-                // The last one counts.
-                self.warn("auxiliary-overruled", &block.words[usize::from(auxiliary.first)]);
-                *auxiliary = Auxiliary::default();
-            } else if auxiliary.count >= 3 {
-                return Err(self.alarm("auxiliary-combination-illegal", word));
-            }
+        if auxiliary.count > 0 && !self.joins(block, word, number, auxiliary)? {
+            return Ok(());
         }
         if auxiliary.count == 0 {
             auxiliary.first = place as u8;
         }
         auxiliary.count += 1;
-        let is_spindle =
-            matches!(number, code::SPINDLE_CLOCKWISE | code::SPINDLE_COUNTER_CLOCKWISE | code::SPINDLE_STOP);
-        if (is_spindle && auxiliary.spindle.is_some()) || (is_flow && auxiliary.flow.is_some()) {
-            return Err(self.alarm("auxiliary-combination-illegal", word));
-        }
         self.modal.in_force.auxiliary = Some(number);
+        if !self.is_capturing() {
+            self.parts.count_code(number);
+        }
+        let stops_behind = self.control.policies.stopping_codes == StoppingCodes::BehindTheMove;
         let flow = |flow| Some((flow, place as u8));
         match number {
             code::STOP => auxiliary.flow = flow(Flow::Stop),
@@ -106,15 +120,116 @@ impl Core {
             }
             code::SPINDLE_CLOCKWISE => auxiliary.spindle = Some(SpindleState::Clockwise),
             code::SPINDLE_COUNTER_CLOCKWISE => auxiliary.spindle = Some(SpindleState::CounterClockwise),
-            code::SPINDLE_STOP => auxiliary.spindle = Some(SpindleState::Stop),
+            code::SPINDLE_STOP => {
+                auxiliary.spindle = Some(SpindleState::Stop);
+                auxiliary.acts_behind |= stops_behind;
+            }
             code::MIST | code::COOLANT_ON => auxiliary.coolant = Some(Coolant::On),
-            code::COOLANT_OFF => auxiliary.coolant = Some(Coolant::Off),
+            code::COOLANT_OFF => {
+                auxiliary.coolant = Some(Coolant::Off);
+                auxiliary.acts_behind |= stops_behind;
+            }
             other => {
                 auxiliary.others[usize::from(auxiliary.other_count)] = other;
                 auxiliary.other_count += 1;
             }
         }
         Ok(())
+    }
+
+    /// Whether a further M word of the block acts at all; those before it may lose their effect.
+    #[cold]
+    fn joins(
+        &mut self,
+        block: &Block,
+        word: &Word,
+        number: u32,
+        auxiliary: &mut Auxiliary,
+    ) -> Result<bool, Alarm> {
+        let first = &block.words[usize::from(auxiliary.first)];
+        if !self.settings.several_auxiliary {
+            // The last one counts.
+            self.warn("auxiliary-overruled", first);
+            *auxiliary = Auxiliary::default();
+            return Ok(true);
+        }
+        let alone = |number| {
+            matches!(number, code::STOP | code::OPTIONAL_STOP | code::END | code::END_AND_REWIND)
+        };
+        let stands_alone =
+            matches!(auxiliary.flow, Some((Flow::Stop | Flow::OptionalStop | Flow::End, _)));
+        let is_spindle = (code::SPINDLE_CLOCKWISE..=code::SPINDLE_STOP).contains(&number);
+        let is_coolant = matches!(number, code::COOLANT_ON | code::COOLANT_OFF);
+        let is_call = matches!(number, code::CALL | code::RETURN);
+        let meets_its_group = (is_spindle && auxiliary.spindle.is_some())
+            || (is_coolant && auxiliary.coolant.is_some())
+            || (is_call && auxiliary.flow.is_some());
+        let clash = stands_alone || alone(number) || meets_its_group;
+        let is_alarm = self.control.policies.auxiliary_combination == AuxiliaryCombination::Alarm;
+        if auxiliary.count >= SEVERAL || (clash && is_alarm) {
+            return Err(self.alarm("auxiliary-combination-illegal", word));
+        }
+        if stands_alone && !alone(number) {
+            self.warn("auxiliary-overruled", word);
+            return Ok(false);
+        }
+        if clash {
+            self.warn("auxiliary-overruled", first);
+        }
+        if alone(number) {
+            *auxiliary = Auxiliary::default();
+        }
+        Ok(true)
+    }
+
+    /// What the M words of a block do behind its move; it waits until a cycle of the block has run.
+    #[cold]
+    pub(crate) fn behind_move(
+        &mut self,
+        auxiliary: Auxiliary,
+        depth: usize,
+        block: &Block,
+        environment: &mut dyn Environment,
+    ) -> Result<(), Alarm> {
+        if self.active.is_some() || self.frames.len() > depth {
+            self.waiting = Some(Waiting { auxiliary, at: self.at, depth });
+            return Ok(());
+        }
+        if auxiliary.acts_behind {
+            if auxiliary.spindle == Some(SpindleState::Stop) && !self.is_capturing() {
+                self.modal.spindle = SpindleState::Stop;
+                self.emit_spindle();
+            }
+            if auxiliary.coolant == Some(Coolant::Off) {
+                self.emit(Action::Coolant(Coolant::Off));
+            }
+        }
+        let Some((flow, place)) = auxiliary.flow else { return Ok(()) };
+        self.flow(auxiliary, block, environment)?;
+        if flow == Flow::End {
+            let rewinds = block.words.get(usize::from(place)).and_then(|word| self.whole(word, 99).ok());
+            let rewinds = rewinds == Some(code::END_AND_REWIND);
+            self.program_ended(if rewinds { Ending::EndAndRewind } else { Ending::End });
+        }
+        Ok(())
+    }
+
+    /// Whether a block whose cycle has run still has something to do.
+    #[inline]
+    pub(crate) fn is_due(&self) -> bool {
+        self.waiting.as_ref().is_some_and(|waiting| self.frames.len() <= waiting.depth)
+    }
+
+    /// Does what waited for the end of a cycle.
+    #[cold]
+    pub(crate) fn finish_waiting(
+        &mut self,
+        block: &Block,
+        environment: &mut dyn Environment,
+    ) -> Result<(), Alarm> {
+        let Some(waiting) = self.waiting.take() else { return Ok(()) };
+        self.at = waiting.at;
+        self.behind_move(waiting.auxiliary, waiting.depth, block, environment)
     }
 }
 
@@ -132,6 +247,17 @@ impl Auxiliary {
         self.flow.is_some()
     }
 
+    /// Something waits for the end of the move.
+    #[inline]
+    pub(crate) fn acts_behind(&self) -> bool {
+        self.acts_behind || self.flow.is_some()
+    }
+
+    /// The state of the spindle that the block asks for before its move.
+    pub(crate) fn spindle_before(&self) -> Option<SpindleState> {
+        self.spindle.filter(|state| !(self.acts_behind && *state == SpindleState::Stop))
+    }
+
     /// M words that only act, none that directs the program.
     pub(crate) fn is_plain(&self) -> bool {
         self.count > 0 && self.flow.is_none()
@@ -143,7 +269,7 @@ impl Auxiliary {
         if self.count == 0 {
             return;
         }
-        if let Some(coolant) = self.coolant {
+        if let Some(coolant) = self.coolant.filter(|coolant| !(self.acts_behind && *coolant == Coolant::Off)) {
             core.emit(Action::Coolant(coolant));
         }
         for code in &self.others[..usize::from(self.other_count)] {

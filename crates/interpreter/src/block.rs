@@ -197,6 +197,7 @@ impl Core {
     #[inline]
     pub(crate) fn execute(&mut self, block: &Block, environment: &mut dyn Environment) -> Result<(), Alarm> {
         self.has_started = true;
+        let depth = self.frames.len();
         if block.words.len() as u32 > block.present().count_ones() {
             self.repeated_addresses(block)?;
         }
@@ -272,7 +273,11 @@ impl Core {
         if waiting_corner && self.corner.as_mut().is_some_and(|corner| corner.waits_too_long(line)) {
             return Err(self.corner_without_next());
         }
-        if auxiliary.has_flow() { self.flow(auxiliary, block, environment) } else { Ok(()) }
+        if auxiliary.acts_behind() {
+            self.behind_move(auxiliary, depth, block, environment)
+        } else {
+            Ok(())
+        }
     }
 
     #[inline]
@@ -432,7 +437,7 @@ impl Core {
         if let Some(word) = block.word(b'T') {
             self.tool_word(word)?;
         }
-        if let Some(state) = auxiliary.spindle {
+        if let Some(state) = auxiliary.spindle_before() {
             self.modal.spindle = state;
         }
         self.emit_spindle();

@@ -26,7 +26,9 @@ pub mod limits;
 mod machine;
 mod modal;
 mod moves;
+mod parts;
 mod report;
+mod reset;
 mod spindle;
 mod text;
 mod tool;
@@ -35,6 +37,7 @@ mod words;
 pub use functions::implemented_functions;
 pub use in_force::GROUPS;
 pub use machine::{Interpreter, Options, Step, SyncReason};
+pub use parts::Parts;
 pub use text::LINE_BYTES_MAX;
 use turnwright_diagnostics::SourceId;
 

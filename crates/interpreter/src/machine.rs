@@ -10,14 +10,16 @@ use turnwright_syntax::Block;
 use turnwright_units::{Displacement, Length, MachineTurret, Position, Radius, SurfaceSpeed, WorkTip};
 
 use crate::Environment;
+use crate::auxiliary::Waiting;
 use crate::corner::PendingCorner;
 use crate::figure::FigureRange;
 use crate::flow::{Frame, ProgramIndex};
 use crate::functions::{Dispatch, FunctionId};
 use crate::in_force::{InForce, MOTION};
 use crate::limits;
-use crate::modal::{FeedMode, Modal, Settings, SingleCycle, SpeedMode};
+use crate::modal::{Modal, Settings, SingleCycle, SpeedMode};
 use crate::moves::ActiveCycle;
+use crate::parts::Parts;
 use crate::report::Alarm;
 use crate::text::{Cursor, Line, Text};
 
@@ -99,12 +101,16 @@ pub(crate) struct Core {
     pub(crate) at: BlockPlace,
     pub(crate) program: Option<u32>,
     pub(crate) program_start: Cursor,
+    /// The first line of the text that the run began with.
+    pub(crate) text_start: Cursor,
     pub(crate) frames: Vec<Frame>,
     pub(crate) index: Option<ProgramIndex>,
     pub(crate) out: VecDeque<Command>,
     /// End of the last move given out.
     pub(crate) tip: Position<WorkTip>,
     pub(crate) active: Option<ActiveCycle>,
+    /// What the block of the cycle in work does when the cycle has run.
+    pub(crate) waiting: Option<Waiting>,
     pub(crate) in_cycle: Option<CycleOrigin>,
     pub(crate) capture: Option<Capture>,
     pub(crate) corner: Option<PendingCorner>,
@@ -113,6 +119,9 @@ pub(crate) struct Core {
     /// Lines of figures that were finished before anything roughed them.
     pub(crate) finished_first: Vec<u32>,
     pub(crate) last_spindle: Option<turnwright_canon::Action>,
+    pub(crate) parts: Parts,
+    /// The tool has coordinates that no command told, since the end of the program.
+    pub(crate) has_untold_place: bool,
     pub(crate) blocks_run: u64,
     pub(crate) cycle_moves: u64,
     pub(crate) has_started: bool,
@@ -132,7 +141,7 @@ pub(crate) struct Core {
 pub struct Interpreter {
     pub(crate) core: Core,
     block: Block,
-    alarm: Option<Alarm>,
+    pub(crate) alarm: Option<Alarm>,
 }
 
 impl Interpreter {
@@ -155,14 +164,10 @@ impl Interpreter {
         let bit = |name| control.parameters.bit(name);
         let modal = Modal {
             position: Position::new(Radius::ZERO, Length::ZERO),
-            motion: if bit("linear-at-power-on") { FunctionId::LINEAR } else { FunctionId::RAPID },
+            motion: if settings.linear_at_power_on { FunctionId::LINEAR } else { FunctionId::RAPID },
             motion_code: dispatch.codes_at_power_on[MOTION].unwrap_or_default(),
             is_inch: bit("inch-input"),
-            feed_mode: if bit("feed-per-minute-at-power-on") {
-                FeedMode::PerMinute
-            } else {
-                FeedMode::PerRevolution
-            },
+            feed_mode: settings.feed_mode_at_power_on,
             feed: None,
             speed_mode: SpeedMode::Constant,
             rpm: Default::default(),
@@ -174,9 +179,10 @@ impl Interpreter {
             work: 0,
             preset: Displacement::new(Radius::ZERO, Length::ZERO),
             cycle: SingleCycle::default(),
-            is_incremental: bit("incremental-at-power-on") && !dispatch.has_incremental_words,
+            is_incremental: false,
             in_force: InForce::new(dispatch.codes_at_power_on),
         };
+        let parts = Parts::new(&control.parameters);
         let start = Cursor { source, offset: 0, line: 1 };
         let mut core = Core {
             control,
@@ -192,16 +198,20 @@ impl Interpreter {
             at: BlockPlace { source, line: 1, ..BlockPlace::default() },
             program: None,
             program_start: start,
+            text_start: start,
+            parts,
             frames: Vec::new(),
             index: None,
             out: VecDeque::new(),
             active: None,
+            waiting: None,
             in_cycle: None,
             capture: None,
             corner: None,
             roughed: Vec::new(),
             finished_first: Vec::new(),
             last_spindle: None,
+            has_untold_place: false,
             blocks_run: 0,
             cycle_moves: 0,
             has_started: false,
@@ -216,6 +226,8 @@ impl Interpreter {
         if setup.machine.is_some() || setup.rates.contains_key("reference") {
             core.said.insert(("home-is-assumed", 0));
         }
+        core.modal.feed = core.initial_feed();
+        core.modal.is_incremental = core.starts_incremental();
         core.start_at_reference();
         Ok(Self { core, block: Block::new(), alarm: None })
     }
@@ -268,6 +280,8 @@ impl Interpreter {
             }
             let result = if self.core.active.is_some() {
                 self.core.next_cycle_move()
+            } else if self.core.is_due() {
+                self.core.finish_waiting(&self.block, environment)
             } else {
                 self.core.run_block(&mut self.block, environment)
             };

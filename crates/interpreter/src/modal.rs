@@ -88,6 +88,19 @@ pub(crate) struct Settings {
     pub(crate) arc_without_radius_alarm: bool,
     pub(crate) duplicate_word_alarm: bool,
     pub(crate) several_auxiliary: bool,
+    /// Largest number of an M word.
+    pub(crate) auxiliary_max: u32,
+    pub(crate) linear_at_power_on: bool,
+    pub(crate) incremental_at_power_on: bool,
+    pub(crate) feed_mode_at_power_on: FeedMode,
+    /// mm per minute.
+    pub(crate) initial_feed: Length,
+    pub(crate) clear_modes_at_reset: bool,
+    pub(crate) reset_selects_first_work: bool,
+    /// At M02.
+    pub(crate) no_rewind_at_plain_end: bool,
+    /// At M30.
+    pub(crate) no_rewind_at_end: bool,
     pub(crate) end_of_record_allowed: bool,
     pub(crate) plain_corner_letters: bool,
     pub(crate) dwell_in_revolutions: bool,
@@ -138,6 +151,19 @@ impl Settings {
             arc_without_radius_alarm: bit("arc-without-radius-alarm"),
             duplicate_word_alarm: bit("duplicate-word-alarm"),
             several_auxiliary: bit("several-auxiliary-codes"),
+            auxiliary_max: 10u32.pow(count("auxiliary-digits").clamp(2, 8)) - 1,
+            linear_at_power_on: bit("linear-at-power-on"),
+            incremental_at_power_on: bit("incremental-at-power-on"),
+            feed_mode_at_power_on: if bit("feed-per-minute-at-power-on") {
+                FeedMode::PerMinute
+            } else {
+                FeedMode::PerRevolution
+            },
+            initial_feed: mm("initial-feed"),
+            clear_modes_at_reset: bit("clear-modes-at-reset"),
+            reset_selects_first_work: bit("reset-selects-first-work-coordinates"),
+            no_rewind_at_plain_end: bit("no-rewind-at-stop"),
+            no_rewind_at_end: bit("no-rewind-at-end"),
             end_of_record_allowed: bit("end-of-record-allowed"),
             plain_corner_letters: bit("plain-corner-letters"),
             dwell_in_revolutions: bit("dwell-in-revolutions"),

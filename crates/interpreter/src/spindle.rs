@@ -45,13 +45,18 @@ impl Core {
         }
     }
 
-    /// Gives out the state of the spindle when it is a new one.
-    pub(crate) fn emit_spindle(&mut self) {
+    /// The state of the spindle as a command.
+    pub(crate) fn spindle_action(&self) -> Action {
         let speed = match self.modal.speed_mode {
             SpeedMode::Constant => SpindleSpeed::Constant(self.modal.rpm),
             SpeedMode::Surface => SpindleSpeed::Surface(self.modal.surface),
         };
-        let action = Action::Spindle { state: self.modal.spindle, speed, rpm_max: self.modal.rpm_max };
+        Action::Spindle { state: self.modal.spindle, speed, rpm_max: self.modal.rpm_max }
+    }
+
+    /// Gives out the state of the spindle when it is a new one.
+    pub(crate) fn emit_spindle(&mut self) {
+        let action = self.spindle_action();
         if self.last_spindle.as_ref().is_none_or(|last| *last != action) && !self.is_power_on_state(&action) {
             self.last_spindle = Some(action.clone());
             self.emit(action);

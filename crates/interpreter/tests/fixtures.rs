@@ -102,6 +102,7 @@ fn conditions<'a>(words: impl Iterator<Item = &'a str>) -> Conditions {
             Some(("skip", switches)) => {
                 conditions.skips = switches.split(',').filter_map(|switch| switch.parse().ok()).collect();
             }
+            Some(("restarts", count)) => conditions.restarts = count.parse().expect("a number"),
             Some((number, value)) => conditions = conditions.with(number, value),
             None => conditions.control = word.to_string(),
         }

@@ -43,6 +43,8 @@ pub struct Conditions {
     pub parameters: Vec<(String, String)>,
     pub skips: Vec<u8>,
     pub setup: String,
+    /// Cycle starts after the end of the program.
+    pub restarts: u32,
 }
 
 impl Conditions {
@@ -69,6 +71,7 @@ pub fn run(text: &[u8], conditions: &Conditions) -> Run {
     let decimals = interpreter.decimals();
     let mut environment = Memory { text, skips: &conditions.skips };
     let mut run = Run { commands: Vec::new(), alarm: None, warnings: Vec::new(), control, decimals };
+    let mut restarts = conditions.restarts;
     loop {
         match interpreter.step(&mut environment) {
             Step::Emit(command) => run.commands.push(command),
@@ -76,6 +79,10 @@ pub fn run(text: &[u8], conditions: &Conditions) -> Run {
             Step::Alarm(alarm) => {
                 run.alarm = Some(*alarm);
                 break;
+            }
+            Step::End if restarts > 0 => {
+                restarts -= 1;
+                interpreter.start_again();
             }
             Step::End => break,
         }
