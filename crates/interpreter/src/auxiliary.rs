@@ -153,11 +153,9 @@ impl Core {
             *auxiliary = Auxiliary::default();
             return Ok(true);
         }
-        let alone = |number| {
-            matches!(number, code::STOP | code::OPTIONAL_STOP | code::END | code::END_AND_REWIND)
-        };
-        let stands_alone =
-            matches!(auxiliary.flow, Some((Flow::Stop | Flow::OptionalStop | Flow::End, _)));
+        let alone =
+            |number| matches!(number, code::STOP | code::OPTIONAL_STOP | code::END | code::END_AND_REWIND);
+        let stands_alone = matches!(auxiliary.flow, Some((Flow::Stop | Flow::OptionalStop | Flow::End, _)));
         let is_spindle = (code::SPINDLE_CLOCKWISE..=code::SPINDLE_STOP).contains(&number);
         let is_coolant = matches!(number, code::COOLANT_ON | code::COOLANT_OFF);
         let is_call = matches!(number, code::CALL | code::RETURN);
@@ -269,7 +267,8 @@ impl Auxiliary {
         if self.count == 0 {
             return;
         }
-        if let Some(coolant) = self.coolant.filter(|coolant| !(self.acts_behind && *coolant == Coolant::Off)) {
+        if let Some(coolant) = self.coolant.filter(|coolant| !(self.acts_behind && *coolant == Coolant::Off))
+        {
             core.emit(Action::Coolant(coolant));
         }
         for code in &self.others[..usize::from(self.other_count)] {

@@ -273,11 +273,7 @@ impl Core {
         if waiting_corner && self.corner.as_mut().is_some_and(|corner| corner.waits_too_long(line)) {
             return Err(self.corner_without_next());
         }
-        if auxiliary.acts_behind() {
-            self.behind_move(auxiliary, depth, block, environment)
-        } else {
-            Ok(())
-        }
+        if auxiliary.acts_behind() { self.behind_move(auxiliary, depth, block, environment) } else { Ok(()) }
     }
 
     #[inline]

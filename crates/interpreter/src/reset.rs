@@ -115,7 +115,6 @@ impl Core {
     fn rewind(&mut self) {
         self.text.jump(self.text_start);
         self.from = 0;
-        self.program = None;
         self.program_start = self.text_start;
         self.has_started = false;
         self.expects_program_number = true;

@@ -60,7 +60,7 @@ fn codes_at_power_on_follow_control_and_parameters() {
 
 #[test]
 fn words_in_force_are_those_that_the_program_wrote() {
-    let mut machine = interpreter("fanuc-0i-tf", &[]);
+    let mut machine = interpreter("fanuc-0i-tf", &[("3402#6", "0")]);
     assert_eq!(machine.modal_word('S'), None);
     run(&mut machine, "O1234\nG20 T0303 S800 M03\nN50 G98 G01 X2. F12.5\nM08\nG02 U.2 W-.1 R.1\nN60 M30\n");
     let words = "FMNOST".chars().map(|letter| machine.modal_word(letter));
