@@ -7,8 +7,10 @@
 //! exist; no address letter and no control name is here, and a code number occurs only as the label that a
 //! person typed ([`CycleLabel`]).
 
+mod axes;
 mod listing;
 
+pub use axes::{Interpolation, OtherAxes, SidePlane, SidePoint, SpeedRatio};
 pub use listing::write_listing;
 use turnwright_units::{Angle, Feed, Lead, Position, Revolutions, Rpm, Seconds, SurfaceSpeed, WorkTip};
 
@@ -30,6 +32,8 @@ pub enum Action {
         to: Position<WorkTip>,
         /// How the axes share the way.
         path: RapidPath,
+        /// Axes beyond X and Z that go along.
+        others: Option<Box<OtherAxes>>,
     },
     /// A cutting move.
     Feed {
@@ -39,6 +43,8 @@ pub enum Action {
         shape: Shape,
         /// Tangential feed.
         feed: Feed,
+        /// Axes beyond X and Z that go along.
+        others: Option<Box<OtherAxes>>,
     },
     /// A move in step with the spindle.
     Thread {
@@ -56,7 +62,13 @@ pub enum Action {
     Relocate {
         /// The same place in the new coordinates.
         to: Position<WorkTip>,
+        /// The places of other axes that have new coordinates.
+        others: Option<Box<OtherAxes>>,
     },
+    /// What the coordinates of the moves from here on mean.
+    Interpolation(Interpolation),
+    /// Another rotation is coupled to the spindle in a fixed ratio, or, with `None`, uncoupled.
+    Coupling(Option<SpeedRatio>),
     /// Standing still.
     Dwell(Dwell),
     /// New state of the spindle.
@@ -112,6 +124,16 @@ pub enum Shape {
         turn: Turn,
         /// Centre of the circle.
         centre: Position<WorkTip>,
+    },
+    /// An arc in a plane that holds the side axis (see [`SidePlane`]); the end's place on that axis is in the
+    /// move's [`OtherAxes`]. Way of an axis outside the plane is spread evenly over the arc.
+    SideArc {
+        /// Which plane.
+        plane: SidePlane,
+        /// Which way, seen with the plane's first axis to the right and its second up.
+        turn: Turn,
+        /// Centre of the circle.
+        centre: SidePoint,
     },
 }
 
@@ -277,6 +299,14 @@ impl Action {
     pub const fn end_point(&self) -> Option<Position<WorkTip>> {
         match self {
             Self::Rapid { to, .. } | Self::Feed { to, .. } | Self::Thread { to, .. } => Some(*to),
+            _ => None,
+        }
+    }
+
+    /// Where the axes beyond X and Z that a move takes along end.
+    pub fn others(&self) -> Option<&OtherAxes> {
+        match self {
+            Self::Rapid { others, .. } | Self::Feed { others, .. } => others.as_deref(),
             _ => None,
         }
     }

@@ -2,34 +2,61 @@
 //!
 //! One command a line, lengths in millimetres, X as `d` (diameter):
 //! `feed d40 z-15 f0.3/rev` · `cw d36 z-45 c(d36 z-42) f0.3/rev` · `rapid d46 z0.5`.
+//!
+//! Other axes follow the position: `c90` and `b30` in degrees, `y5` in millimetres, `v` the place on the virtual
+//! axis; the centre of an arc across the section names its two axes, `c(d40 y0)`.
 
-use turnwright_units::{Feed, Position, WorkTip, write_fixed, write_millimetres};
+use turnwright_units::{Feed, Position, WorkTip, write_degrees, write_fixed, write_millimetres};
 
-use crate::{Action, Command, Coolant, Dwell, Shape, SpindleSpeed, SpindleState, Turn};
+use crate::{
+    Action, Command, Coolant, Dwell, Interpolation, OtherAxes, Shape, SidePlane, SpindleSpeed, SpindleState,
+    Turn,
+};
 
 /// Writes one command, without a line end, its lengths rounded to `decimals` places.
 pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
     match &command.action {
-        Action::Rapid { to, .. } => {
+        Action::Rapid { to, others, .. } => {
             out.extend_from_slice(b"rapid");
             write_position(out, *to, decimals);
+            write_others(out, others.as_deref(), decimals);
         }
-        Action::Feed { to, shape, feed } => {
+        Action::Feed { to, shape, feed, others } => {
             match shape {
                 Shape::Line => {
                     out.extend_from_slice(b"feed");
                     write_position(out, *to, decimals);
+                    write_others(out, others.as_deref(), decimals);
                 }
                 Shape::Arc { turn, centre } => {
-                    out.extend_from_slice(match turn {
-                        Turn::Clockwise => b"cw",
-                        Turn::CounterClockwise => b"ccw",
-                    });
+                    write_turn(out, *turn);
                     write_position(out, *to, decimals);
+                    write_others(out, others.as_deref(), decimals);
                     out.extend_from_slice(b" c(");
                     let before = out.len();
                     write_position(out, *centre, decimals);
                     out.remove(before);
+                    out.push(b')');
+                }
+                Shape::SideArc { plane, turn, centre } => {
+                    write_turn(out, *turn);
+                    write_position(out, *to, decimals);
+                    write_others(out, others.as_deref(), decimals);
+                    let side =
+                        if others.as_deref().is_some_and(|others| others.v.is_some()) { b'v' } else { b'y' };
+                    out.extend_from_slice(b" c(");
+                    match plane {
+                        SidePlane::Face => {
+                            out.push(b'd');
+                            write_millimetres(out, centre.along + centre.along, decimals);
+                        }
+                        SidePlane::Flank | SidePlane::Wall => {
+                            out.push(b'z');
+                            write_millimetres(out, centre.along, decimals);
+                        }
+                    }
+                    out.extend_from_slice(&[b' ', side]);
+                    write_millimetres(out, centre.side, decimals);
                     out.push(b')');
                 }
             }
@@ -54,10 +81,24 @@ pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
                 write_fixed(out, start_angle.millidegrees(), 3);
             }
         }
-        Action::Relocate { to } => {
+        Action::Relocate { to, others } => {
             out.extend_from_slice(b"relocate");
             write_position(out, *to, decimals);
+            write_others(out, others.as_deref(), decimals);
         }
+        Action::Interpolation(Interpolation::Normal) => out.extend_from_slice(b"interpolation normal"),
+        Action::Interpolation(Interpolation::Polar { zero, .. }) => {
+            out.extend_from_slice(b"interpolation polar c");
+            write_degrees(out, *zero, decimals);
+        }
+        Action::Interpolation(Interpolation::Cylindrical { radius }) => {
+            out.extend_from_slice(b"interpolation cylindrical r");
+            write_millimetres(out, radius.0, decimals);
+        }
+        Action::Coupling(Some(ratio)) => {
+            out.extend_from_slice(format!("coupling {}:{}", ratio.spindle, ratio.other).as_bytes());
+        }
+        Action::Coupling(None) => out.extend_from_slice(b"coupling off"),
         Action::Dwell(Dwell::Time(seconds)) => {
             out.extend_from_slice(format!("dwell {}s", seconds.0).as_bytes());
         }
@@ -98,6 +139,29 @@ pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
         out.extend_from_slice(format!("  {} {}", cycle.label, cycle.phase.word()).as_bytes());
         if cycle.pass > 0 {
             out.extend_from_slice(format!(" {}", cycle.pass).as_bytes());
+        }
+    }
+}
+
+fn write_turn(out: &mut Vec<u8>, turn: Turn) {
+    out.extend_from_slice(match turn {
+        Turn::Clockwise => b"cw",
+        Turn::CounterClockwise => b"ccw",
+    });
+}
+
+fn write_others(out: &mut Vec<u8>, others: Option<&OtherAxes>, decimals: u8) {
+    let Some(others) = others else { return };
+    for (name, length) in [(b" y", others.y), (b" v", others.v)] {
+        if let Some(length) = length {
+            out.extend_from_slice(name);
+            write_millimetres(out, length, decimals);
+        }
+    }
+    for (name, angle) in [(b" c", others.c), (b" b", others.b)] {
+        if let Some(angle) = angle {
+            out.extend_from_slice(name);
+            write_degrees(out, angle, decimals);
         }
     }
 }

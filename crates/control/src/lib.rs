@@ -19,7 +19,9 @@ use serde::Deserialize;
 pub use functions::{CodeSystem, FunctionEntry, Functions, Group, parse_code};
 pub use messages::{Language, MessageText, Messages};
 pub use parameters::{Parameter, ParameterFault, Parameters};
-pub use setup::{AxisPair, Machine, Offset, Setup, SetupFault, machine_names};
+pub use setup::{
+    AxisPair, LinearAxis, Machine, MachineAxes, Offset, RotaryAxis, Setup, SetupFault, machine_names,
+};
 pub use suggest::nearest;
 
 pub(crate) mod embedded {

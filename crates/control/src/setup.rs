@@ -33,6 +33,94 @@ pub struct Machine {
     pub rpm_max: u32,
     pub rpm_min_surface: u32,
     pub reference: AxisPair,
+    /// The fastest that driven tools turn; left out: there are none.
+    pub live_tool_rpm_max: Option<u32>,
+    #[serde(default)]
+    pub axes: MachineAxes,
+}
+
+/// The axes that a machine has beyond X and Z.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct MachineAxes {
+    /// Rotary axis about Z: the spindle as an axis.
+    pub c: Option<RotaryAxis>,
+    /// Linear axis across X and Z.
+    pub y: Option<LinearAxis>,
+    /// Rotary axis about Y.
+    pub b: Option<RotaryAxis>,
+}
+
+/// A rotary axis.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RotaryAxis {
+    /// The axis number by which parameters name it.
+    pub number: u8,
+    /// Rapid traverse, degrees per minute.
+    pub rapid_deg_per_min: f64,
+    /// It turns no faster while it cuts, degrees per minute.
+    pub cutting_max_deg_per_min: f64,
+    /// Its reference point, degrees.
+    #[serde(default)]
+    pub reference_deg: f64,
+    /// Degrees after which its display begins again.
+    #[serde(default = "full_turn")]
+    pub turn_deg: f64,
+    /// Whether its display begins again after a turn, and an absolute word goes the shorter way round.
+    #[serde(default)]
+    pub rolls_over: bool,
+    /// The basic axis to which it lies parallel in planes: 5 for X, 6 for Y; left out: the one the plane asks for.
+    pub parallel: Option<u8>,
+    /// M codes that make the spindle an axis.
+    #[serde(default)]
+    pub on_m: Vec<u32>,
+    /// M codes that make the axis a spindle again.
+    #[serde(default)]
+    pub off_m: Vec<u32>,
+}
+
+/// A linear axis.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LinearAxis {
+    /// The axis number by which parameters name it.
+    pub number: u8,
+    /// Rapid traverse, mm per minute.
+    pub rapid_mm_per_min: f64,
+    /// Its reference point, mm.
+    #[serde(default)]
+    pub reference_mm: f64,
+}
+
+fn full_turn() -> f64 {
+    360.0
+}
+
+impl MachineAxes {
+    /// What no axis can have.
+    fn fault(&self) -> Option<String> {
+        let positive = |value: f64| value.is_finite() && value > 0.0;
+        for (name, axis) in [("c", &self.c), ("b", &self.b)] {
+            let Some(axis) = axis else { continue };
+            let is_sound = positive(axis.rapid_deg_per_min)
+                && positive(axis.cutting_max_deg_per_min)
+                && positive(axis.turn_deg)
+                && axis.turn_deg <= 1e6
+                && axis.reference_deg.abs() <= 1e6;
+            if !is_sound {
+                return Some(format!("axes.{name}: rates and turn must be greater than zero"));
+            }
+            if !matches!(axis.parallel, None | Some(5 | 6)) {
+                return Some(format!("axes.{name}: parallel is 5 (to X) or 6 (to Y)"));
+            }
+        }
+        let y_is_sound = self
+            .y
+            .as_ref()
+            .is_none_or(|axis| positive(axis.rapid_mm_per_min) && axis.reference_mm.abs() <= 1e6);
+        (!y_is_sound).then(|| "axes.y: the rate must be greater than zero".to_string())
+    }
 }
 
 /// A tool offset.
@@ -61,6 +149,9 @@ pub struct Setup {
     /// Overrides of single machine values.
     #[serde(default)]
     pub rates: toml::Table,
+    /// Axes beyond X and Z, added to those of the machine; `c = false` takes one away.
+    #[serde(default)]
+    pub axes: toml::Table,
     /// Tool offsets by number.
     #[serde(default)]
     pub offsets: BTreeMap<String, Offset>,
@@ -131,6 +222,10 @@ impl Setup {
             // A whole number is a fine length too.
             table.insert(key.clone(), value.clone());
         }
+        if !self.axes.is_empty() {
+            let axes = table.entry("axes").or_insert_with(|| toml::Table::new().into());
+            change_axes(axes, &self.axes);
+        }
         let machine: Machine = table.try_into().map_err(fault)?;
         let positive = [
             machine.rapid_x_mm_per_min,
@@ -141,7 +236,28 @@ impl Setup {
         if positive.iter().any(|rate| !rate.is_finite() || *rate <= 0.0) {
             return Err(SetupFault { message: "rates must be greater than zero".to_string(), line: 0 });
         }
-        Ok(machine)
+        match machine.axes.fault() {
+            Some(message) => Err(SetupFault { message, line: 0 }),
+            None => Ok(machine),
+        }
+    }
+}
+
+/// Lays the axes of a setup over those of a machine, value by value.
+fn change_axes(of_machine: &mut toml::Value, of_setup: &toml::Table) {
+    let Some(axes) = of_machine.as_table_mut() else { return };
+    for (name, change) in of_setup {
+        match (change, axes.get_mut(name).and_then(toml::Value::as_table_mut)) {
+            (toml::Value::Boolean(false), _) => {
+                axes.remove(name);
+            }
+            (toml::Value::Table(change), Some(axis)) => {
+                axis.extend(change.iter().map(|(key, value)| (key.clone(), value.clone())));
+            }
+            (other, _) => {
+                axes.insert(name.clone(), other.clone());
+            }
+        }
     }
 }
 
@@ -161,6 +277,12 @@ mod tests {
         let setup = Setup::parse("[rates]\nrapid_x_mm_per_min = 6000\n").expect("setup");
         assert_eq!(setup.machine().expect("machine").rapid_x_mm_per_min, 6000.0);
         let setup = Setup::parse("[rates]\nrapid_y = 1\n").expect("setup");
+        assert!(setup.machine().is_err());
+        let setup = Setup::parse("machine = \"turn-mill\"\n[axes]\nc.rapid_deg_per_min = 9000\nb = false\n");
+        let axes = setup.expect("setup").machine().expect("machine").axes;
+        assert_eq!(axes.c.map(|axis| (axis.number, axis.rapid_deg_per_min)), Some((4, 9000.0)));
+        assert_eq!((axes.b, axes.y.map(|axis| axis.number)), (None, Some(3)));
+        let setup = Setup::parse("[axes.y]\nnumber = 3\nrapid_mm_per_min = 0.0\n").expect("setup");
         assert!(setup.machine().is_err());
         for name in machine_names() {
             let setup = Setup { machine: Some(name.to_string()), ..Setup::default() };

@@ -123,7 +123,7 @@ impl Figure {
             Some(FigureMotion::Arc { turn, centre }) => Shape::Arc { turn, centre: centre + shift },
             _ => Shape::Line,
         };
-        Action::Feed { to, shape, feed: context.feed }
+        Action::Feed { to, shape, feed: context.feed, others: None }
     }
 }
 

@@ -88,11 +88,11 @@ pub struct Context {
 
 impl Context {
     pub(crate) const fn rapid(&self, to: Position<WorkTip>) -> Action {
-        Action::Rapid { to, path: self.rapid }
+        Action::Rapid { to, path: self.rapid, others: None }
     }
 
     pub(crate) const fn line(&self, to: Position<WorkTip>) -> Action {
-        Action::Feed { to, shape: Shape::Line, feed: self.feed }
+        Action::Feed { to, shape: Shape::Line, feed: self.feed, others: None }
     }
 }
 

@@ -273,7 +273,8 @@ mod tests {
         let request =
             BoxRequest { context: context(), first: FirstAxis::X, end: at(26, -25), taper: Length::ZERO };
         let cut = box_cycle(request).expect("a box").nth(1).expect("a cut");
-        let expected = Action::Feed { to: at(26, -25), shape: Shape::Line, feed: context().feed };
+        let expected =
+            Action::Feed { to: at(26, -25), shape: Shape::Line, feed: context().feed, others: None };
         assert_eq!((cut.action, cut.phase), (expected, Phase::Cut));
     }
 }

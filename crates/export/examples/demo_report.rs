@@ -85,12 +85,12 @@ impl Demo {
     }
 
     fn rapid(&mut self, diameter_mm: f64, z_mm: f64) {
-        self.add(Action::Rapid { to: at(diameter_mm, z_mm), path: RapidPath::EachAxis }, 0.3);
+        self.add(Action::Rapid { to: at(diameter_mm, z_mm), path: RapidPath::EachAxis, others: None }, 0.3);
     }
 
     fn cut(&mut self, diameter_mm: f64, z_mm: f64, shape: Shape) {
         let feed = Feed::PerRevolution(FeedPerRevolution(Length::from_nm(300_000)));
-        self.add(Action::Feed { to: at(diameter_mm, z_mm), shape, feed }, 1.5);
+        self.add(Action::Feed { to: at(diameter_mm, z_mm), shape, feed, others: None }, 1.5);
     }
 
     fn thread(&mut self, diameter_mm: f64, z_mm: f64) {

@@ -170,10 +170,11 @@ impl PathRecorder {
         let seconds = if seconds.is_finite() { seconds.max(0.0) } else { 0.0 };
         self.elapsed_s += seconds;
         match &command.action {
-            Action::Rapid { to, path } => self.add_rapid(command, *to, *path),
-            Action::Feed { to, shape, feed } => {
+            Action::Rapid { to, path, .. } => self.add_rapid(command, *to, *path),
+            Action::Feed { to, shape, feed, .. } => {
                 let bow = match shape {
-                    Shape::Line => None,
+                    // The picture is the section: an arc across it is seen from its edge.
+                    Shape::Line | Shape::SideArc { .. } => None,
                     Shape::Arc { turn, centre } => bow_between(self.at, *to, *centre, *turn),
                 };
                 let mm = feed.length().to_mm() as f32;
@@ -187,10 +188,12 @@ impl PathRecorder {
                 let advance = Advance::LeadMm(lead.0.to_mm() as f32);
                 self.add_cut(command, *to, None, SegmentKind::Thread, advance);
             }
-            Action::Relocate { to } => self.at = *to,
+            Action::Relocate { to, .. } => self.at = *to,
             Action::Tool { tool, .. } => self.tool = *tool,
             Action::Dwell(Dwell::Time(_) | Dwell::Turns(_)) => self.dwell_s += seconds,
-            Action::Spindle { .. }
+            Action::Interpolation(_)
+            | Action::Coupling(_)
+            | Action::Spindle { .. }
             | Action::Coolant(_)
             | Action::Auxiliary { .. }
             | Action::Stop
@@ -404,12 +407,12 @@ mod tests {
     }
 
     fn rapid(to: Position<WorkTip>, path: RapidPath) -> Command {
-        Command { action: Action::Rapid { to, path }, origin: Origin::line(1) }
+        Command { action: Action::Rapid { to, path, others: None }, origin: Origin::line(1) }
     }
 
     fn feed(to: Position<WorkTip>, shape: Shape) -> Command {
         let feed = Feed::PerRevolution(FeedPerRevolution(Length::from_nm(200_000)));
-        Command { action: Action::Feed { to, shape, feed }, origin: Origin::line(2) }
+        Command { action: Action::Feed { to, shape, feed, others: None }, origin: Origin::line(2) }
     }
 
     fn recorder() -> PathRecorder {

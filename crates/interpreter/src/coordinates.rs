@@ -96,7 +96,7 @@ impl Core {
         self.modal.position = Position::new(place.x + before.x - after.x, place.z + before.z - after.z);
         if before != after {
             self.tip = Position::new(self.tip.x + before.x - after.x, self.tip.z + before.z - after.z);
-            self.emit(turnwright_canon::Action::Relocate { to: self.tip });
+            self.emit(turnwright_canon::Action::Relocate { to: self.tip, others: None });
         }
     }
 

@@ -126,13 +126,13 @@ impl Core {
         }
         let Some((form, word)) = word else {
             self.modal.position = to;
-            return self.emit_move(to, Action::Feed { to, shape: Shape::Line, feed });
+            return self.emit_move(to, Action::Feed { to, shape: Shape::Line, feed, others: None });
         };
         let size = self.radius(&word, Role::CornerSize)?.0;
         if size.is_zero() {
             // A corner of no size is the plain corner of two lines.
             self.modal.position = to;
-            return self.emit_move(to, Action::Feed { to, shape: Shape::Line, feed });
+            return self.emit_move(to, Action::Feed { to, shape: Shape::Line, feed, others: None });
         }
         let corner_point = self.modal.position;
         let moves_x = to.x != corner_point.x;
@@ -209,7 +209,7 @@ impl Core {
         let way = direction(corner.axis, corner.start, corner.corner);
         let before = along(corner.axis, corner.corner, size.times(-way.signum()));
         let after = along(next, corner.corner, size.times(ahead.signum()));
-        let line = Action::Feed { to: before, shape: Shape::Line, feed: corner.feed };
+        let line = Action::Feed { to: before, shape: Shape::Line, feed: corner.feed, others: None };
         // Both elements belong to the block that asked for them.
         let (here, sequence) = (self.at.line, self.at.sequence);
         (self.at.line, self.at.sequence) = (corner.line, corner.sequence);
@@ -222,7 +222,7 @@ impl Core {
                     Shape::Arc { turn: turn(corner.axis, way, ahead), centre }
                 }
             };
-            self.emit_move(after, Action::Feed { to: after, shape, feed: corner.feed })?;
+            self.emit_move(after, Action::Feed { to: after, shape, feed: corner.feed, others: None })?;
         }
         (self.at.line, self.at.sequence) = (here, sequence);
         Ok(after)

@@ -251,7 +251,10 @@ impl Core {
         self.in_cycle = Some(CycleOrigin { label: CycleLabel(code), pass: 1, phase: Phase::Home });
         // Each axis goes back at its own rate, whatever the parameter for rapid moves says.
         self.modal.position = home;
-        self.emit_move(home, Action::Rapid { to: home, path: turnwright_canon::RapidPath::EachAxis })?;
+        self.emit_move(
+            home,
+            Action::Rapid { to: home, path: turnwright_canon::RapidPath::EachAxis, others: None },
+        )?;
         self.in_cycle = None;
         if let Some(frame) = self.frames.pop() {
             self.go(frame.back, environment)?;

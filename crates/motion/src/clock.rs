@@ -6,10 +6,11 @@
 //! revolution with the spindle standing, no feed at all) has no known time: it counts no seconds and is
 //! counted in [`Clock::unknown_feeds`].
 
-use turnwright_canon::{Action, Command, Dwell, RapidPath, Shape};
+use turnwright_canon::{Action, Command, Dwell, OtherAxes, RapidPath, Shape};
 use turnwright_units::{Feed, Lead, Position, WorkTip};
 
 use crate::MachineRates;
+use crate::axes::AxisPlaces;
 use crate::path::{ArcPath, point};
 use crate::spindle::{Order, Spindle};
 use crate::surface::Slowness;
@@ -110,6 +111,7 @@ impl Totals {
 pub struct Clock {
     rates: MachineRates,
     position: Position<WorkTip>,
+    axes: AxisPlaces,
     tool: Option<u32>,
     spindle: Spindle,
     /// The speed of the thread in progress, rpm: a chain of threads keeps it.
@@ -117,6 +119,9 @@ pub struct Clock {
     totals: Totals,
     unknown_feeds: u64,
 }
+
+/// A command that would take longer, some 30,000 years, has no known time: sums stay finite.
+const SECONDS_MAX: f64 = 1e12;
 
 /// Seconds and length of a move, before any wait.
 struct Way {
@@ -130,6 +135,7 @@ impl Clock {
         Self {
             rates,
             position: start,
+            axes: AxisPlaces::default(),
             tool: None,
             spindle: Spindle::new(&rates),
             thread_rpm: None,
@@ -156,8 +162,8 @@ impl Clock {
     /// Measures the next command.
     pub fn advance(&mut self, command: &Command) -> Timing {
         let timing = match &command.action {
-            Action::Rapid { to, path } => self.rapid(*to, *path),
-            Action::Feed { to, shape, feed } => self.cut(*to, shape, *feed),
+            Action::Rapid { to, path, others } => self.rapid(*to, *path, others.as_deref()),
+            Action::Feed { to, shape, feed, others } => self.cut(*to, shape, *feed, others.as_deref()),
             Action::Thread { to, lead, lead_end, .. } => self.thread(*to, *lead, lead_end.unwrap_or(*lead)),
             Action::Dwell(dwell) => self.dwell(*dwell),
             Action::Spindle { state, speed, rpm_max } => {
@@ -174,11 +180,18 @@ impl Clock {
                 self.still(Kind::ToolChange, if turns { self.rates.tool_change_s } else { 0.0 })
             }
             Action::Coolant(_) | Action::Auxiliary { .. } => self.still(Kind::Other, self.rates.auxiliary_s),
-            Action::Relocate { to } => {
+            Action::Relocate { to, others } => {
                 self.position = *to;
+                if let Some(others) = others {
+                    self.axes.follow(others);
+                }
                 self.still(Kind::Other, 0.0)
             }
-            Action::Stop | Action::OptionalStop | Action::End | Action::Message(_) => {
+            Action::Interpolation(interpolation) => {
+                self.axes.interpolate(*interpolation);
+                self.still(Kind::Other, 0.0)
+            }
+            Action::Coupling(_) | Action::Stop | Action::OptionalStop | Action::End | Action::Message(_) => {
                 self.still(Kind::Other, 0.0)
             }
         };
@@ -187,6 +200,9 @@ impl Clock {
         }
         if let Some(to) = command.action.end_point() {
             self.position = to;
+        }
+        if let Some(others) = command.action.others() {
+            self.axes.follow(others);
         }
         self.totals.add(&timing);
         timing
@@ -201,12 +217,12 @@ impl Clock {
 
     /// Minutes as seconds; a way whose time is not known is counted and takes none.
     fn known_minutes(&mut self, minutes: Option<f64>, length_mm: f64) -> Way {
-        let seconds = minutes.map(|minutes| minutes * 60.0).filter(|seconds| seconds.is_finite());
+        let seconds = minutes.map(|minutes| minutes * 60.0).filter(|seconds| *seconds <= SECONDS_MAX);
         self.unknown_feeds += u64::from(seconds.is_none());
         Way { seconds: seconds.unwrap_or(0.0), length_mm }
     }
 
-    fn rapid(&mut self, to: Position<WorkTip>, path: RapidPath) -> Timing {
+    fn rapid(&mut self, to: Position<WorkTip>, path: RapidPath, others: Option<&OtherAxes>) -> Timing {
         let way = to - self.position;
         let (dx_mm, dz_mm) = (way.x.to_mm().abs(), way.z.to_mm().abs());
         let (rate_x, rate_z) = (self.rates.rapid_x_mm_per_min, self.rates.rapid_z_mm_per_min);
@@ -229,6 +245,13 @@ impl Clock {
             }
             _ => (None, libm::hypot(dx_mm, dz_mm)),
         };
+        let (minutes, length_mm) = match others {
+            None => (minutes, length_mm),
+            Some(others) => {
+                let way = self.axes.rapid(length_mm, others, &self.rates);
+                (longer(minutes, way.minutes_min), way.length_mm)
+            }
+        };
         let way = self.known_minutes(minutes, length_mm);
         // At rapid the spindle goes at once to the speed of the end point.
         let before = self.spindle.target_rpm();
@@ -245,27 +268,39 @@ impl Clock {
         }
     }
 
-    fn cut(&mut self, to: Position<WorkTip>, shape: &Shape, feed: Feed) -> Timing {
+    fn cut(
+        &mut self,
+        to: Position<WorkTip>,
+        shape: &Shape,
+        feed: Feed,
+        others: Option<&OtherAxes>,
+    ) -> Timing {
         let (start, end) = (point(self.position), point(to));
         let arc = match shape {
-            Shape::Line => None,
+            // Of an arc across the section X is taken to change evenly; it matters to the spindle only.
+            Shape::Line | Shape::SideArc { .. } => None,
             Shape::Arc { turn, centre } => Some(ArcPath::new(self.position, to, *centre, *turn)),
         };
         let length_mm =
             arc.map_or_else(|| libm::hypot(end.x - start.x, end.z - start.z), |arc| arc.length_mm());
+        let axes =
+            others.map(|others| self.axes.cut(self.position, to, shape, length_mm, others, &self.rates));
+        let (length_mm, feed_mm) =
+            axes.as_ref().map_or((length_mm, length_mm), |way| (way.length_mm, way.feed_mm));
         let cutting_max = self.rates.cutting_max_mm_per_min;
         let minutes = match (feed, self.spindle.order) {
-            (Feed::PerMinute(feed), _) => minutes(length_mm, feed.0.to_mm().min(cutting_max)),
+            (Feed::PerMinute(feed), _) => minutes(feed_mm, feed.0.to_mm().min(cutting_max)),
             (Feed::PerRevolution(feed), Order::Constant(rpm)) => {
-                minutes(length_mm, (feed.0.to_mm() * rpm).min(cutting_max))
+                minutes(feed_mm, (feed.0.to_mm() * rpm).min(cutting_max))
             }
             (Feed::PerRevolution(feed), Order::Surface(law)) => {
                 Slowness::new(feed.0.to_mm(), law, cutting_max).map(|slowness| match arc {
-                    None => slowness.line_minutes(start.x, end.x, length_mm),
+                    None => slowness.line_minutes(start.x, end.x, feed_mm),
                     Some(arc) => arc.circles().map(|circle| slowness.circle_minutes(&circle)).sum(),
                 })
             }
         };
+        let minutes = axes.map_or(minutes, |way| longer(minutes, way.minutes_min));
         let rpm = turning(self.speeds_along(start.x, end.x, arc));
         let waited_s = self.wait_for(self.spindle.order.rpm_at(start.x));
         let way = self.known_minutes(minutes, length_mm);
@@ -339,6 +374,11 @@ fn minutes(way: f64, per_minute: f64) -> Option<f64> {
     } else {
         None
     }
+}
+
+/// The longer of two times that an axis needs; not known when one is not.
+fn longer(one: Option<f64>, other: Option<f64>) -> Option<f64> {
+    Some(one?.max(other?))
 }
 
 /// A range of speeds, unless the spindle stands.

@@ -11,6 +11,7 @@
 //! This first model knows no acceleration of the axes: what it leaves out or assumes is named in
 //! [`ESTIMATES`], so that a report can say so. Deliberately not here: text, alarms, look-ahead.
 
+mod axes;
 mod clock;
 mod path;
 mod rates;

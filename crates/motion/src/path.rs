@@ -40,13 +40,17 @@ impl ArcPath {
         centre: Position<WorkTip>,
         turn: Turn,
     ) -> Self {
-        let (start, end, centre) = (point(from), point(to), point(centre));
+        Self::between(point(from), point(to), point(centre), turn == Turn::Clockwise)
+    }
+
+    /// The arc between two points of any plane; X is its upward, Z its rightward axis.
+    pub(crate) fn between(start: Point, end: Point, centre: Point, clockwise: bool) -> Self {
         Self {
             centre,
             start_radius_mm: libm::hypot(start.x - centre.x, start.z - centre.z),
             end_radius_mm: libm::hypot(end.x - centre.x, end.z - centre.z),
             start_rad: libm::atan2(start.x - centre.x, start.z - centre.z),
-            sweep_rad: sweep_rad(start, end, centre, turn == Turn::Clockwise),
+            sweep_rad: sweep_rad(start, end, centre, clockwise),
         }
     }
 

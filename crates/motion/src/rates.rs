@@ -12,6 +12,14 @@ pub struct MachineRates {
     pub rapid_x_mm_per_min: f64,
     /// Rapid traverse of Z, mm per minute.
     pub rapid_z_mm_per_min: f64,
+    /// Rapid traverse of a Y axis, mm per minute.
+    pub rapid_y_mm_per_min: f64,
+    /// Rapid traverse of a C axis, degrees per minute.
+    pub rapid_c_deg_per_min: f64,
+    /// Rapid traverse of a B axis, degrees per minute.
+    pub rapid_b_deg_per_min: f64,
+    /// A C axis turns no faster while it cuts, degrees per minute.
+    pub cutting_max_c_deg_per_min: f64,
     /// No cutting move is faster along its path, mm per minute.
     pub cutting_max_mm_per_min: f64,
     /// From one turret station to another, seconds.
@@ -31,6 +39,10 @@ impl Default for MachineRates {
         Self {
             rapid_x_mm_per_min: 12_000.0,
             rapid_z_mm_per_min: 16_000.0,
+            rapid_y_mm_per_min: 8_000.0,
+            rapid_c_deg_per_min: 36_000.0,
+            rapid_b_deg_per_min: 9_000.0,
+            cutting_max_c_deg_per_min: 18_000.0,
             cutting_max_mm_per_min: 8_000.0,
             tool_change_s: 1.5,
             spindle_ramp_rpm_per_s: 1_000.0,
@@ -50,6 +62,10 @@ impl MachineRates {
         [
             ("rapid_x_mm_per_min", positive(self.rapid_x_mm_per_min)),
             ("rapid_z_mm_per_min", positive(self.rapid_z_mm_per_min)),
+            ("rapid_y_mm_per_min", positive(self.rapid_y_mm_per_min)),
+            ("rapid_c_deg_per_min", positive(self.rapid_c_deg_per_min)),
+            ("rapid_b_deg_per_min", positive(self.rapid_b_deg_per_min)),
+            ("cutting_max_c_deg_per_min", positive(self.cutting_max_c_deg_per_min)),
             ("cutting_max_mm_per_min", positive(self.cutting_max_mm_per_min)),
             ("tool_change_s", not_negative(self.tool_change_s)),
             ("spindle_ramp_rpm_per_s", not_negative(self.spindle_ramp_rpm_per_s)),

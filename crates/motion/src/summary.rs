@@ -300,12 +300,12 @@ mod tests {
     }
 
     fn rapid(diameter: i32, z: i32) -> Action {
-        Action::Rapid { to: at(diameter, z), path: RapidPath::EachAxis }
+        Action::Rapid { to: at(diameter, z), path: RapidPath::EachAxis, others: None }
     }
 
     fn feed(diameter: i32, z: i32) -> Action {
         let feed = Feed::PerMinute(FeedPerMinute(Length::from_mm(100)));
-        Action::Feed { to: at(diameter, z), shape: Shape::Line, feed }
+        Action::Feed { to: at(diameter, z), shape: Shape::Line, feed, others: None }
     }
 
     /// Line, cycle label and pass (0: no cycle), action.
@@ -382,6 +382,7 @@ mod tests {
             to: at(20, -5),
             shape: Shape::Arc { turn: Turn::CounterClockwise, centre: at(20, 0) },
             feed: Feed::PerMinute(FeedPerMinute(Length::from_mm(100))),
+            others: None,
         };
         let summary = summed(&[(1, 0, 0, rapid(20, 5)), (2, 0, 0, arc)]);
         let mm = |mm: i32| Length::from_mm(mm);

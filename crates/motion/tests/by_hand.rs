@@ -1,7 +1,8 @@
 //! Times worked out by hand, each in the comment beside it.
 
 use turnwright_canon::{
-    Action, Command, Coolant, Dwell, Origin, RapidPath, Shape, SpindleSpeed, SpindleState, Turn,
+    Action, Command, Coolant, Dwell, Interpolation, Origin, OtherAxes, RapidPath, Shape, SidePlane,
+    SidePoint, SpindleSpeed, SpindleState, Turn,
 };
 use turnwright_motion::{Clock, Kind, MachineRates, Timing};
 use turnwright_units::{
@@ -31,7 +32,7 @@ fn run(clock: &mut Clock, action: Action) -> Timing {
 }
 
 fn line(clock: &mut Clock, diameter: f64, z: f64, feed: Feed) -> Timing {
-    run(clock, Action::Feed { to: at(diameter, z), shape: Shape::Line, feed })
+    run(clock, Action::Feed { to: at(diameter, z), shape: Shape::Line, feed, others: None })
 }
 
 fn thread(clock: &mut Clock, diameter: f64, z: f64, lead: f64, lead_end: Option<f64>) -> Timing {
@@ -41,7 +42,7 @@ fn thread(clock: &mut Clock, diameter: f64, z: f64, lead: f64, lead_end: Option<
 }
 
 fn rapid(clock: &mut Clock, diameter: f64, z: f64, path: RapidPath) -> Timing {
-    run(clock, Action::Rapid { to: at(diameter, z), path })
+    run(clock, Action::Rapid { to: at(diameter, z), path, others: None })
 }
 
 fn spindle(clock: &mut Clock, speed: SpindleSpeed, rpm_max: Option<u32>) -> Timing {
@@ -107,7 +108,7 @@ fn a_ball_at_constant_surface_speed() {
     let mut clock = Clock::new(at(0.0, 10.0), rates);
     spindle(&mut clock, surface(60), None);
     let shape = Shape::Arc { turn: Turn::CounterClockwise, centre: at(0.0, 0.0) };
-    let timing = run(&mut clock, Action::Feed { to: at(20.0, 0.0), shape, feed: per_rev(0.1) });
+    let timing = run(&mut clock, Action::Feed { to: at(20.0, 0.0), shape, feed: per_rev(0.1), others: None });
     assert!((timing.seconds - std::f64::consts::TAU).abs() < 1e-3, "{}", timing.seconds);
     near(timing.length_mm, 5.0 * std::f64::consts::PI);
     // A cutting feed of 8000 mm/min at most; on the axis the law alone would ask for no end of it.
@@ -237,7 +238,78 @@ fn what_waits_for_a_standing_spindle_is_counted_not_guessed() {
 #[test]
 fn other_coordinates_without_a_move_take_no_time() {
     let mut clock = clock(40.0, 0.0);
-    clock.advance(&Command { action: Action::Relocate { to: at(50.0, 10.0) }, origin: Origin::line(1) });
+    clock.advance(&Command {
+        action: Action::Relocate { to: at(50.0, 10.0), others: None },
+        origin: Origin::line(1),
+    });
     assert_eq!(rapid(&mut clock, 50.0, 10.0, RapidPath::EachAxis).seconds, 0.0);
     assert_eq!(clock.position(), at(50.0, 10.0));
+}
+
+#[test]
+fn a_degree_counts_as_a_millimetre_in_the_feed() {
+    let mut clock = clock(40.0, 0.0);
+    let per_minute = |mm: f64| Feed::PerMinute(FeedPerMinute(length(mm)));
+    let with_c = |degrees: i64| OtherAxes {
+        c: Some(Angle::from_millidegrees(degrees * 1_000)),
+        per_degree: length(1.0),
+        ..OtherAxes::default()
+    };
+    // The rotary axis alone: 90 degrees at 180 a minute.
+    let line = |z: f64, feed: Feed, others: OtherAxes| Action::Feed {
+        to: at(40.0, z),
+        shape: Shape::Line,
+        feed,
+        others: Some(Box::new(others)),
+    };
+    let timing = run(&mut clock, line(0.0, per_minute(180.0), with_c(90)));
+    near(timing.seconds, 30.0);
+    near(timing.length_mm, 0.0);
+    // With a length: the root of 30 and 40 squared is 50, at 100 a minute.
+    let timing = run(&mut clock, line(-30.0, per_minute(100.0), with_c(130)));
+    near(timing.seconds, 30.0);
+    near(timing.length_mm, 30.0);
+    // In inch input a degree is an inch: 10 degrees at 20 (inches) a minute.
+    let inch = OtherAxes { per_degree: length(25.4), ..with_c(140) };
+    near(run(&mut clock, line(-30.0, per_minute(20.0 * 25.4), inch)).seconds, 30.0);
+    // The rotary axis is no faster than 18,000 degrees a minute: 900 take 3 s.
+    near(
+        run(
+            &mut clock,
+            line(
+                -30.0,
+                per_minute(8_000.0 * 25.4),
+                OtherAxes { c: Some(Angle::from_millidegrees(1_040_000)), ..inch },
+            ),
+        )
+        .seconds,
+        3.0,
+    );
+    // At rapid each axis for itself: 180 degrees at 36,000 a minute are 0.3 s, 10 mm of Z less.
+    let to = at(40.0, -40.0);
+    let rapid = Action::Rapid { to, path: RapidPath::EachAxis, others: Some(Box::new(with_c(1_220))) };
+    near(run(&mut clock, rapid).seconds, 0.3);
+}
+
+#[test]
+fn in_a_virtual_plane_the_feed_is_along_the_virtual_path() {
+    let mut clock = clock(40.0, 0.0);
+    run(&mut clock, Action::Interpolation(Interpolation::Polar { zero: Angle::ZERO, is_below: false }));
+    let feed = Feed::PerMinute(FeedPerMinute(length(60.0)));
+    let v = |mm: f64| {
+        Some(Box::new(OtherAxes {
+            v: Some(length(mm)),
+            c: Some(Angle::from_millidegrees(45_000)),
+            ..OtherAxes::default()
+        }))
+    };
+    let timing =
+        run(&mut clock, Action::Feed { to: at(40.0, 0.0), shape: Shape::Line, feed, others: v(20.0) });
+    near(timing.seconds, 20.0);
+    // Half a circle of radius 10 about X10 (radius), V20: 10 π mm.
+    let centre = SidePoint { along: length(10.0), side: length(20.0) };
+    let shape = Shape::SideArc { plane: SidePlane::Face, turn: Turn::CounterClockwise, centre };
+    let timing = run(&mut clock, Action::Feed { to: at(0.0, 0.0), shape, feed, others: v(20.0) });
+    near(timing.length_mm, 10.0 * std::f64::consts::PI);
+    near(timing.seconds, 10.0 * std::f64::consts::PI);
 }

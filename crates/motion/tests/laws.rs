@@ -2,7 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use turnwright_canon::{Action, Command, Dwell, Origin, RapidPath, Shape, SpindleSpeed, SpindleState, Turn};
+use turnwright_canon::{
+    Action, Command, Dwell, Interpolation, Origin, OtherAxes, RapidPath, Shape, SidePlane, SidePoint,
+    SpindleSpeed, SpindleState, Turn,
+};
 use turnwright_motion::{ArcPath, Clock, MachineRates, SPIRAL_TOLERANCE, Summary, TIME_TOLERANCE, Timing};
 use turnwright_units::{
     Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position, Radius, Revolutions, Rpm, Seconds,
@@ -78,7 +81,7 @@ impl Cut {
         let state = SpindleState::Clockwise;
         run(&mut clock, Action::Spindle { state, speed: surface, rpm_max: Some(Rpm(self.rpm_max)) });
         let feed = Feed::PerRevolution(FeedPerRevolution(length(self.feed_mm_per_rev)));
-        run(&mut clock, Action::Feed { to, shape, feed })
+        run(&mut clock, Action::Feed { to, shape, feed, others: None })
     }
 }
 
@@ -248,19 +251,37 @@ fn any_action(random: &mut Random) -> Action {
         _ => length(random.between(-100.0, 100.0)),
     };
     let place = |random: &mut Random| Position::new(Radius(any_length(random)), any_length(random));
+    let angle = |random: &mut Random| Angle::from_nanodegrees(any_length(random).nm());
+    let others = |random: &mut Random| {
+        random.chance(3).then(|| {
+            Box::new(OtherAxes {
+                c: random.chance(2).then(|| angle(random)),
+                y: random.chance(2).then(|| any_length(random)),
+                b: random.chance(2).then(|| angle(random)),
+                v: random.chance(2).then(|| any_length(random)),
+                per_degree: any_length(random),
+            })
+        })
+    };
     match random.next() % 8 {
-        0 => Action::Rapid { to: place(random), path: RapidPath::EachAxis },
-        1 => Action::Rapid { to: place(random), path: RapidPath::Straight },
+        0 => Action::Rapid { to: place(random), path: RapidPath::EachAxis, others: others(random) },
+        1 => Action::Rapid { to: place(random), path: RapidPath::Straight, others: others(random) },
         2 | 3 => {
             let turn = if random.chance(2) { Turn::Clockwise } else { Turn::CounterClockwise };
-            let shape =
-                if random.chance(2) { Shape::Line } else { Shape::Arc { turn, centre: place(random) } };
+            let shape = match random.next() % 4 {
+                0 | 1 => Shape::Line,
+                2 => Shape::Arc { turn, centre: place(random) },
+                _ => {
+                    let centre = SidePoint { along: any_length(random), side: any_length(random) };
+                    Shape::SideArc { plane: SidePlane::Wall, turn, centre }
+                }
+            };
             let feed = if random.chance(4) {
                 Feed::PerMinute(FeedPerMinute(any_length(random)))
             } else {
                 Feed::PerRevolution(FeedPerRevolution(any_length(random)))
             };
-            Action::Feed { to: place(random), shape, feed }
+            Action::Feed { to: place(random), shape, feed, others: others(random) }
         }
         4 => Action::Thread {
             to: place(random),
@@ -270,6 +291,10 @@ fn any_action(random: &mut Random) -> Action {
         },
         5 if random.chance(2) => Action::Dwell(Dwell::Time(Seconds(number(random)))),
         5 => Action::Dwell(Dwell::Turns(Revolutions(number(random)))),
+        6 if random.chance(3) => {
+            let radius = Radius(any_length(random));
+            Action::Interpolation(Interpolation::Cylindrical { radius })
+        }
         6 => Action::Tool { tool: (random.next() % 3) as u32, offset: 1 },
         _ => Action::Spindle {
             state: if random.chance(5) { SpindleState::Stop } else { SpindleState::CounterClockwise },
@@ -298,6 +323,10 @@ fn nothing_makes_a_time_that_is_no_number() {
         let rates = MachineRates {
             rapid_x_mm_per_min: rate(),
             rapid_z_mm_per_min: rate(),
+            rapid_y_mm_per_min: rate(),
+            rapid_c_deg_per_min: rate(),
+            rapid_b_deg_per_min: rate(),
+            cutting_max_c_deg_per_min: rate(),
             cutting_max_mm_per_min: rate(),
             tool_change_s: rate(),
             spindle_ramp_rpm_per_s: rate(),

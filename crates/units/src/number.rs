@@ -1,6 +1,6 @@
 //! An own fixed-point number writer: listings and traces are numbers, and `format!` is too slow for them.
 
-use crate::Length;
+use crate::{Angle, Length};
 
 /// Writes `value` / 10^`decimals` without trailing zeros (`12.5`, `-0.001`, `40`).
 ///
@@ -41,6 +41,11 @@ pub fn write_millimetres(out: &mut Vec<u8>, length: Length, decimals: u8) {
     let step = STEP_NM[decimals as usize];
     let half = if length.nm() < 0 { -(step / 2) } else { step / 2 };
     write_fixed(out, length.nm().saturating_add(half) / step, decimals);
+}
+
+/// Writes an angle in degrees, as [`write_millimetres`] writes a length.
+pub fn write_degrees(out: &mut Vec<u8>, angle: Angle, decimals: u8) {
+    write_millimetres(out, Length::from_nm(angle.nanodegrees() / 1_000), decimals);
 }
 
 #[cfg(test)]

@@ -46,7 +46,17 @@ impl Measure {
 }
 
 fn rates(machine: &Machine) -> MachineRates {
+    let axes = &machine.axes;
+    let usual = MachineRates::default();
+    let rapid_y = axes.y.as_ref().map(|axis| axis.rapid_mm_per_min);
+    let rapid_b = axes.b.as_ref().map(|axis| axis.rapid_deg_per_min);
+    let c = axes.c.as_ref();
     MachineRates {
+        rapid_y_mm_per_min: rapid_y.unwrap_or(usual.rapid_y_mm_per_min),
+        rapid_c_deg_per_min: c.map_or(usual.rapid_c_deg_per_min, |axis| axis.rapid_deg_per_min),
+        rapid_b_deg_per_min: rapid_b.unwrap_or(usual.rapid_b_deg_per_min),
+        cutting_max_c_deg_per_min: c
+            .map_or(usual.cutting_max_c_deg_per_min, |axis| axis.cutting_max_deg_per_min),
         rapid_x_mm_per_min: machine.rapid_x_mm_per_min,
         rapid_z_mm_per_min: machine.rapid_z_mm_per_min,
         cutting_max_mm_per_min: machine.cutting_max_mm_per_min,

@@ -378,7 +378,10 @@ mod tests {
             let to = at(40 + i64::from(number % 2), -((number % 1000) as i32));
             let cycle = Some(CycleOrigin { label: CycleLabel(711), pass: 3, phase: Phase::Home });
             let origin = Origin { cycle, figure_line: Some(2), ..Origin::line(1) };
-            path.add(&Command { action: Action::Rapid { to, path: RapidPath::EachAxis }, origin }, 0.5);
+            path.add(
+                &Command { action: Action::Rapid { to, path: RapidPath::EachAxis, others: None }, origin },
+                0.5,
+            );
         }
         path
     }

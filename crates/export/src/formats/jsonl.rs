@@ -5,8 +5,13 @@
 //! numbers carry no trailing zeros, so that equal runs give equal bytes. Writing a command allocates nothing
 //! but room in the buffer.
 
-use turnwright_canon::{Action, Command, Coolant, Dwell, Origin, Shape, SpindleSpeed, SpindleState, Turn};
-use turnwright_units::{Feed, LeastIncrement, Length, Position, WorkTip, write_fixed, write_millimetres};
+use turnwright_canon::{
+    Action, Command, Coolant, Dwell, Interpolation, Origin, OtherAxes, Shape, SidePlane, SpindleSpeed,
+    SpindleState, Turn,
+};
+use turnwright_units::{
+    Feed, LeastIncrement, Length, Position, WorkTip, write_degrees, write_fixed, write_millimetres,
+};
 
 /// Decimal places of feeds, leads and seconds, which are finer than any least increment.
 const FINE_DECIMALS: u8 = 6;
@@ -47,11 +52,19 @@ pub fn write_header(out: &mut Vec<u8>, header: &TraceHeader<'_>) {
 /// Writes one command and its line end, its lengths rounded to `decimals` places.
 pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
     match &command.action {
-        Action::Rapid { to, path: _ } => {
+        Action::Rapid { to, path: _, others } => {
             out.extend_from_slice(br#"{"op":"rapid""#);
             write_end_point(out, *to, decimals);
+            if let Some(others) = others {
+                write_others(out, others, decimals);
+            }
         }
-        Action::Feed { to, shape, feed } => write_feed(out, *to, shape, *feed, decimals),
+        Action::Feed { to, shape, feed, others } => {
+            write_feed(out, *to, shape, *feed, decimals);
+            if let Some(others) = others {
+                write_others(out, others, decimals);
+            }
+        }
         Action::Thread { to, lead, lead_end, start_angle } => {
             out.extend_from_slice(br#"{"op":"thread""#);
             write_end_point(out, *to, decimals);
@@ -90,6 +103,12 @@ pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
         }
         // No line of its own: each move says where it ends in the coordinates in force.
         Action::Relocate { .. } => return,
+        Action::Interpolation(interpolation) => write_interpolation(out, *interpolation, decimals),
+        Action::Coupling(ratio) => {
+            write_number(out, br#"{"op":"coupling","spindle":"#, ratio.map_or(0, |ratio| ratio.spindle));
+            out.extend_from_slice(br#","other":"#);
+            write_fixed(out, ratio.map_or(0, |ratio| ratio.other).into(), 0);
+        }
         Action::Tool { tool, offset } => {
             write_number(out, br#"{"op":"tool","tool":"#, *tool);
             write_number(out, br#","offset":"#, *offset);
@@ -139,12 +158,60 @@ fn write_feed(out: &mut Vec<u8>, to: Position<WorkTip>, shape: &Shape, feed: Fee
             write_length(out, br#","cz":"#, centre.z, decimals);
             write_length(out, br#","r":"#, distance(to, *centre), decimals);
         }
+        // The side axis is `cs`: the axis whose place the move gives, `y` or `v`.
+        Shape::SideArc { plane, turn, centre } => {
+            out.extend_from_slice(match turn {
+                Turn::Clockwise => br#","shape":"cw""#.as_slice(),
+                Turn::CounterClockwise => br#","shape":"ccw""#,
+            });
+            out.extend_from_slice(match plane {
+                SidePlane::Face => br#","plane":"face""#.as_slice(),
+                SidePlane::Flank => br#","plane":"flank""#,
+                SidePlane::Wall => br#","plane":"wall""#,
+            });
+            match plane {
+                SidePlane::Face => write_length(out, br#","cx":"#, centre.along + centre.along, decimals),
+                SidePlane::Flank | SidePlane::Wall => write_length(out, br#","cz":"#, centre.along, decimals),
+            }
+            write_length(out, br#","cs":"#, centre.side, decimals);
+        }
     }
     write_length(out, br#","f":"#, feed.length(), FINE_DECIMALS);
     out.extend_from_slice(match feed {
         Feed::PerRevolution(_) => br#","fu":"mm/rev""#.as_slice(),
         Feed::PerMinute(_) => br#","fu":"mm/min""#,
     });
+}
+
+/// Ends of the axes beyond X and Z: only of those that the move takes along.
+#[cold]
+fn write_others(out: &mut Vec<u8>, others: &OtherAxes, decimals: u8) {
+    if let Some(y) = others.y {
+        write_length(out, br#","y":"#, y, decimals);
+    }
+    if let Some(v) = others.v {
+        write_length(out, br#","v":"#, v, decimals);
+    }
+    for (name, angle) in [(br#","c":"#, others.c), (br#","b":"#, others.b)] {
+        if let Some(angle) = angle {
+            out.extend_from_slice(name);
+            write_degrees(out, angle, decimals);
+        }
+    }
+}
+
+#[cold]
+fn write_interpolation(out: &mut Vec<u8>, interpolation: Interpolation, decimals: u8) {
+    match interpolation {
+        Interpolation::Normal => out.extend_from_slice(br#"{"op":"interpolation","mode":"normal""#),
+        Interpolation::Polar { zero, .. } => {
+            out.extend_from_slice(br#"{"op":"interpolation","mode":"polar","c_zero":"#);
+            write_degrees(out, zero, decimals);
+        }
+        Interpolation::Cylindrical { radius } => {
+            write_length(out, br#"{"op":"interpolation","mode":"cylindrical","r":"#, radius.0, decimals);
+        }
+    }
 }
 
 /// The fields that every command has, and the end of the line.
@@ -292,7 +359,7 @@ mod tests {
     fn a_rapid_has_its_end_point_and_origin() {
         let origin = Origin { sequence: Some(10), program: Some(1), ..Origin::line(4) };
         assert_eq!(
-            line_of(Action::Rapid { to: at(46_000, 2_500), path: RapidPath::EachAxis }, origin),
+            line_of(Action::Rapid { to: at(46_000, 2_500), path: RapidPath::EachAxis, others: None }, origin),
             "{\"op\":\"rapid\",\"x\":46,\"z\":2.5,\"line\":4,\"n\":10,\"o\":1,\"depth\":0}\n"
         );
     }
@@ -301,7 +368,7 @@ mod tests {
     fn feeds_have_shape_centre_radius_and_the_unit_of_the_feed() {
         let feed = Feed::PerRevolution(FeedPerRevolution(Length::from_nm(300_000)));
         assert_eq!(
-            at_line_seven(Action::Feed { to: at(-1_600, -15_000), shape: Shape::Line, feed }),
+            at_line_seven(Action::Feed { to: at(-1_600, -15_000), shape: Shape::Line, feed, others: None }),
             "{\"op\":\"feed\",\"x\":-1.6,\"z\":-15,\"shape\":\"line\",\"f\":0.3,\"fu\":\"mm/rev\",\"line\":7,\
              \"depth\":0}\n"
         );
@@ -309,13 +376,13 @@ mod tests {
         let feed = Feed::PerMinute(FeedPerMinute(Length::from_mm(120)));
         let shape = Shape::Arc { turn: Turn::Clockwise, centre: at(36_000, -42_000) };
         assert_eq!(
-            at_line_seven(Action::Feed { to: at(36_000, -45_000), shape, feed }),
+            at_line_seven(Action::Feed { to: at(36_000, -45_000), shape, feed, others: None }),
             "{\"op\":\"feed\",\"x\":36,\"z\":-45,\"shape\":\"cw\",\"cx\":36,\"cz\":-42,\"r\":3,\"f\":120,\
              \"fu\":\"mm/min\",\"line\":7,\"depth\":0}\n"
         );
         let shape = Shape::Arc { turn: Turn::CounterClockwise, centre: at(30_000, -42_000) };
         assert!(
-            at_line_seven(Action::Feed { to: at(36_000, -46_000), shape, feed })
+            at_line_seven(Action::Feed { to: at(36_000, -46_000), shape, feed, others: None })
                 .contains(r#""shape":"ccw","cx":30,"cz":-42,"r":5,"f":120"#)
         );
     }
@@ -440,13 +507,13 @@ mod tests {
     fn lengths_are_rounded_to_the_increment() {
         let mut out = Vec::new();
         let to = Position::<WorkTip>::new(Radius(Length::from_nm(13_620_710)), Length::from_nm(-2_540));
-        let action = Action::Rapid { to, path: RapidPath::Straight };
+        let action = Action::Rapid { to, path: RapidPath::Straight, others: None };
         write_command(&mut out, &Command { action, origin: Origin::line(1) }, 3);
         assert!(out.starts_with(br#"{"op":"rapid","x":27.241,"z":-0.003,"#));
         // Both rounded to a hundredth, as the coarsest increment asks for; never "-0".
         out.clear();
         let to = Position::<WorkTip>::new(Radius::ZERO, Length::from_nm(-LeastIncrement::METRIC_C.nm()));
-        let action = Action::Rapid { to, path: RapidPath::Straight };
+        let action = Action::Rapid { to, path: RapidPath::Straight, others: None };
         write_command(&mut out, &Command { action, origin: Origin::line(1) }, 2);
         assert!(out.starts_with(br#"{"op":"rapid","x":0,"z":0,"#));
     }

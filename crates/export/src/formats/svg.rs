@@ -623,12 +623,12 @@ mod tests {
     }
 
     fn rapid(diameter_mm: f64, z_mm: f64) -> Action {
-        Action::Rapid { to: at(diameter_mm, z_mm), path: RapidPath::EachAxis }
+        Action::Rapid { to: at(diameter_mm, z_mm), path: RapidPath::EachAxis, others: None }
     }
 
     fn feed(diameter_mm: f64, z_mm: f64, shape: Shape) -> Action {
         let feed = Feed::PerRevolution(FeedPerRevolution(Length::from_nm(200_000)));
-        Action::Feed { to: at(diameter_mm, z_mm), shape, feed }
+        Action::Feed { to: at(diameter_mm, z_mm), shape, feed, others: None }
     }
 
     fn thread(diameter_mm: f64, z_mm: f64) -> Action {

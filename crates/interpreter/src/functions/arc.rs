@@ -74,14 +74,14 @@ fn arc(core: &mut Core, call: &mut Call<'_>, turn: Turn) -> Result<(), Alarm> {
     }
     core.warn_block("arc-as-line");
     core.modal.position = to;
-    core.emit_move(to, Action::Feed { to, shape: Shape::Line, feed })
+    core.emit_move(to, Action::Feed { to, shape: Shape::Line, feed, others: None })
 }
 
 impl Core {
     fn cut_arc(&mut self, arc: &Arc, centre: Position<WorkTip>) -> Result<(), Alarm> {
         self.modal.position = arc.to;
         let shape = Shape::Arc { turn: arc.turn, centre };
-        self.emit_move(arc.to, Action::Feed { to: arc.to, shape, feed: arc.feed })
+        self.emit_move(arc.to, Action::Feed { to: arc.to, shape, feed: arc.feed, others: None })
     }
 
     fn arc_by_radius(&mut self, arc: &Arc, word: &turnwright_syntax::Word) -> Result<(), Alarm> {
@@ -177,6 +177,6 @@ impl Core {
             Position::new(stop.x.to_diameter().rounded(increment).to_radius(), stop.z.rounded(increment));
         self.cut_arc(&Arc { to: stop, ..*arc }, centre)?;
         self.modal.position = arc.to;
-        self.emit_move(arc.to, Action::Feed { to: arc.to, shape: Shape::Line, feed: arc.feed })
+        self.emit_move(arc.to, Action::Feed { to: arc.to, shape: Shape::Line, feed: arc.feed, others: None })
     }
 }

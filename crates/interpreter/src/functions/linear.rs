@@ -36,7 +36,7 @@ fn linear(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
         return core.linear_with_corner(call.block, to, feed);
     }
     core.modal.position = to;
-    core.emit_move(to, Action::Feed { to, shape: Shape::Line, feed })
+    core.emit_move(to, Action::Feed { to, shape: Shape::Line, feed, others: None })
 }
 
 impl Core {

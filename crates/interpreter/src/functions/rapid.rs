@@ -19,7 +19,7 @@ fn rapid(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     let to = core.target(call.block)?;
     core.modal.position = to;
     let path = core.rapid_path();
-    core.emit_move(to, Action::Rapid { to, path })
+    core.emit_move(to, Action::Rapid { to, path, others: None })
 }
 
 impl Core {

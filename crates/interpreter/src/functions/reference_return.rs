@@ -38,7 +38,7 @@ fn reference_return(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     // Both legs are non-linear whatever the parameter for positioning says.
     for place in [by_way_of, to] {
         core.modal.position = place;
-        core.emit_move(place, Action::Rapid { to: place, path: RapidPath::EachAxis })?;
+        core.emit_move(place, Action::Rapid { to: place, path: RapidPath::EachAxis, others: None })?;
     }
     Ok(())
 }
