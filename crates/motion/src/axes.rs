@@ -100,7 +100,9 @@ impl AxisPlaces {
         AxisWay {
             length_mm,
             feed_mm: libm::hypot(length_mm, libm::hypot(c, b)),
-            minutes_min: at_rate(c_degrees, rates.cutting_max_c_deg_per_min),
+            minutes_min: at_rate(c_degrees, rates.cutting_max_c_deg_per_min)
+                .zip(at_rate(length_mm, rates.cutting_max_mm_per_min))
+                .map(|(turning, moving)| turning.max(moving)),
         }
     }
 

@@ -288,10 +288,12 @@ impl Clock {
         let (length_mm, feed_mm) =
             axes.as_ref().map_or((length_mm, length_mm), |way| (way.length_mm, way.feed_mm));
         let cutting_max = self.rates.cutting_max_mm_per_min;
-        let minutes = match (feed, self.spindle.order) {
-            (Feed::PerMinute(feed), _) => minutes(feed_mm, feed.0.to_mm().min(cutting_max)),
+        // Degrees are no way in millimetres: with rotary axes only the length is held below the limit.
+        let fastest = if axes.is_some() { f64::INFINITY } else { cutting_max };
+        let known = match (feed, self.spindle.order) {
+            (Feed::PerMinute(feed), _) => minutes(feed_mm, feed.0.to_mm().min(fastest)),
             (Feed::PerRevolution(feed), Order::Constant(rpm)) => {
-                minutes(feed_mm, (feed.0.to_mm() * rpm).min(cutting_max))
+                minutes(feed_mm, (feed.0.to_mm() * rpm).min(fastest))
             }
             (Feed::PerRevolution(feed), Order::Surface(law)) => {
                 Slowness::new(feed.0.to_mm(), law, cutting_max).map(|slowness| match arc {
@@ -300,7 +302,7 @@ impl Clock {
                 })
             }
         };
-        let minutes = axes.map_or(minutes, |way| longer(minutes, way.minutes_min));
+        let minutes = axes.map_or(known, |way| longer(known, way.minutes_min));
         let rpm = turning(self.speeds_along(start.x, end.x, arc));
         let waited_s = self.wait_for(self.spindle.order.rpm_at(start.x));
         let way = self.known_minutes(minutes, length_mm);

@@ -278,7 +278,7 @@ fn a_degree_counts_as_a_millimetre_in_the_feed() {
             &mut clock,
             line(
                 -30.0,
-                per_minute(8_000.0 * 25.4),
+                per_minute(20_000.0 * 25.4),
                 OtherAxes { c: Some(Angle::from_millidegrees(1_040_000)), ..inch },
             ),
         )
