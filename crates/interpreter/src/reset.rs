@@ -145,7 +145,7 @@ impl Interpreter {
         self.alarm = None;
         self.core.is_over = false;
         if std::mem::take(&mut self.core.has_untold_place) {
-            self.core.emit(Action::Relocate { to: self.core.tip });
+            self.core.emit(Action::Relocate { to: self.core.tip, others: None });
         }
         self.core.blocks_run = 0;
         self.core.cycle_moves = 0;
