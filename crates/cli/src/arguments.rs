@@ -77,8 +77,8 @@ pub(crate) struct Machine {
     /// Setup file: machine, offsets, parameters [default: the program's name with .toml, beside it]
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) setup: Option<PathBuf>,
-    /// Sets a parameter of the control, for example 5130=10 or 3401#0=1; may be repeated
-    #[arg(long = "param", value_name = "NO[#BIT]=VALUE", value_parser = assignment)]
+    /// Sets a parameter of the control, for example 5130=10, 3401#0=1 or, of one axis, 1221.Z=-50; may be repeated
+    #[arg(long = "param", value_name = "NO[#BIT][.AXIS]=VALUE", value_parser = assignment)]
     pub(crate) parameters: Vec<(String, String)>,
     /// Block skip switches that are on, 1 to 9: blocks with /1 … /9 are passed over (/ is /1)
     #[arg(long, value_name = "1,3", value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=9))]

@@ -95,17 +95,9 @@ impl Session {
                 }
             }
         };
-        for (number, value) in &setup.parameters {
-            let value = match value {
-                toml::Value::Boolean(bit) => u8::from(*bit).to_string(),
-                toml::Value::String(text) => text.clone(),
-                toml::Value::Integer(number) => number.to_string(),
-                toml::Value::Float(number) => number.to_string(),
-                // Refused below as no number.
-                other => other.type_str().to_string(),
-            };
-            let file = setup_path.as_ref().map_or(String::new(), |path| path.display().to_string());
-            set_parameter(&mut control, number, &value, &file, speech)?;
+        let file = setup_path.as_ref().map_or(String::new(), |path| path.display().to_string());
+        for (number, value) in setup.parameter_words() {
+            set_parameter(&mut control, &number, &value, &file, speech)?;
         }
         for (number, value) in &options.parameters {
             set_parameter(&mut control, number, value, "", speech)?;
@@ -149,6 +141,10 @@ fn set_parameter(
         ParameterFault::Unknown { number, nearest } => {
             let diagnostic = Diagnostic::error("unknown-parameter").with("parameter", number);
             hinted(Finding::new(file, diagnostic).failed(), nearest.as_deref(), speech)
+        }
+        ParameterFault::Axis { number, example } => {
+            let diagnostic = Diagnostic::error("parameter-axis-missing").with("parameter", number);
+            hinted(Finding::new(file, diagnostic).failed(), Some(&example), speech)
         }
         ParameterFault::Value { number, value, expected } => {
             let expected = match speech.language {

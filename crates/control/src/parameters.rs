@@ -7,6 +7,28 @@ use serde::Deserialize;
 
 use crate::{Language, nearest};
 
+/// An axis of the machine, for values that each axis has its own of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Axis {
+    /// Across the spindle axis.
+    X,
+    /// Along the spindle axis.
+    Z,
+}
+
+impl Axis {
+    /// All axes, in the order of their numbers.
+    pub const ALL: [Self; 2] = [Self::X, Self::Z];
+
+    /// Its letter.
+    pub const fn letter(self) -> &'static str {
+        match self {
+            Self::X => "X",
+            Self::Z => "Z",
+        }
+    }
+}
+
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Texts {
@@ -22,6 +44,9 @@ pub struct Parameter {
     pub unit: String,
     numbers: BTreeMap<String, String>,
     default: f64,
+    /// It has one value for each axis.
+    #[serde(default)]
+    per_axis: bool,
     #[serde(default)]
     #[expect(dead_code, reason = "kept in the data for readers")]
     certainty: Option<String>,
@@ -57,6 +82,13 @@ pub enum ParameterFault {
         /// The nearest number that exists.
         nearest: Option<String>,
     },
+    /// The parameter has a value for each axis, and none was named.
+    Axis {
+        /// The number.
+        number: String,
+        /// How it is written for one axis.
+        example: String,
+    },
     /// The value cannot be the parameter's.
     Value {
         /// The number.
@@ -72,7 +104,8 @@ pub enum ParameterFault {
 #[derive(Clone, Debug)]
 pub struct Parameters {
     map: String,
-    values: BTreeMap<String, f64>,
+    /// A parameter that does not go by axes has its value in the first place.
+    values: BTreeMap<String, [f64; Axis::ALL.len()]>,
 }
 
 /// The table; read when it is first asked for.
@@ -89,12 +122,12 @@ impl Parameters {
     pub(crate) fn load(map: &str, own: &toml::Table) -> Result<Self, String> {
         let mut values = BTreeMap::new();
         for (name, parameter) in table() {
-            values.insert(name.clone(), parameter.default);
+            values.insert(name.clone(), [parameter.default; Axis::ALL.len()]);
         }
         for (name, value) in own {
             let value = value.as_integer().map(|n| n as f64).or(value.as_float());
             match (values.get_mut(name), value) {
-                (Some(slot), Some(value)) => *slot = value,
+                (Some(slot), Some(value)) => slot.fill(value),
                 _ => return Err(format!("parameter {name} is unknown or has no number")),
             }
         }
@@ -103,8 +136,13 @@ impl Parameters {
 
     /// The value of a parameter by name; bits are 0 and 1.
     pub fn value(&self, name: &str) -> f64 {
+        self.axis_value(name, Axis::ALL[0])
+    }
+
+    /// The value that a parameter by name has for an axis.
+    pub fn axis_value(&self, name: &str, axis: Axis) -> f64 {
         debug_assert!(self.values.contains_key(name), "no parameter {name} in data/parameters.toml");
-        self.values.get(name).copied().unwrap_or(0.0)
+        self.values.get(name).map_or(0.0, |values| values[axis as usize])
     }
 
     /// A bit by name.
@@ -112,21 +150,24 @@ impl Parameters {
         self.value(name) != 0.0
     }
 
-    /// Sets a parameter by the number that the control gives it: `3401#0`, `5130`, `051`.
+    /// Sets a parameter by the number that the control gives it: `3401#0`, `5130`, `051`. Behind the number of a
+    /// parameter that each axis has its own of stands the axis: `1221.X`, `1310#0.Z`.
     ///
     /// # Errors
-    /// An unknown number (with the nearest), or a value of the wrong kind.
+    /// An unknown number (with the nearest), an axis missing, or a value of the wrong kind.
     pub fn set(&mut self, number: &str, value: &str) -> Result<(), ParameterFault> {
         let number = number.trim();
-        let table = table();
-        let known = table.iter().filter_map(|(name, p)| p.numbers.get(&self.map).map(|n| (name, p, n)));
-        let Some((name, parameter, printed)) =
-            known.clone().find(|(_, _, printed)| normal(printed.trim_start_matches('!')) == normal(number))
-        else {
-            let numbers: Vec<&str> = known.map(|(_, _, n)| n.trim_start_matches('!')).collect();
-            let nearest = nearest(number, numbers).map(str::to_string);
+        let Some((name, parameter, axis)) = self.look_up(number) else {
+            let known = table().values().filter(|one| one.numbers.contains_key(&self.map));
+            let numbers: Vec<String> = known.flat_map(|one| self.addresses(one)).map(|(n, _)| n).collect();
+            let nearest = nearest(number, numbers.iter().map(String::as_str)).map(str::to_string);
             return Err(ParameterFault::Unknown { number: number.to_string(), nearest });
         };
+        if parameter.per_axis && axis.is_none() {
+            let example = format!("{number}.{}", Axis::ALL[0].letter());
+            return Err(ParameterFault::Axis { number: number.to_string(), example });
+        }
+        let printed = parameter.numbers.get(&self.map).map_or("", String::as_str);
         let fault = |expected| ParameterFault::Value {
             number: number.to_string(),
             value: value.to_string(),
@@ -148,8 +189,47 @@ impl Parameters {
             _ if parsed.is_finite() && parsed.abs() < 1e9 => parsed,
             _ => return Err(fault("a number in range")),
         };
-        self.values.insert(name.clone(), parsed);
+        if let Some(values) = self.values.get_mut(name) {
+            match axis {
+                Some(axis) => values[axis as usize] = parsed,
+                None => values.fill(parsed),
+            }
+        }
         Ok(())
+    }
+
+    /// The parameter that a number of this control names, and the axis when the number names one too.
+    fn look_up(&self, number: &str) -> Option<(&'static String, &'static Parameter, Option<Axis>)> {
+        let of_number = |number: &str| {
+            table().iter().find(|(_, parameter)| {
+                parameter
+                    .numbers
+                    .get(&self.map)
+                    .is_some_and(|printed| normal(printed.trim_start_matches('!')) == normal(number))
+            })
+        };
+        let axis =
+            |letter: &str| Axis::ALL.into_iter().find(|axis| letter.eq_ignore_ascii_case(axis.letter()));
+        if let Some((number, letter)) = number.rsplit_once('.')
+            && let Some(axis) = axis(letter)
+        {
+            let (name, parameter) = of_number(number)?;
+            return parameter.per_axis.then_some((name, parameter, Some(axis)));
+        }
+        of_number(number).map(|(name, parameter)| (name, parameter, None))
+    }
+
+    /// The numbers by which a parameter of this control is set, and the place of each value.
+    fn addresses(&self, parameter: &Parameter) -> Vec<(String, Axis)> {
+        let Some(number) = parameter.numbers.get(&self.map).map(|number| number.trim_start_matches('!'))
+        else {
+            return Vec::new();
+        };
+        if parameter.per_axis {
+            Axis::ALL.into_iter().map(|axis| (format!("{number}.{}", axis.letter()), axis)).collect()
+        } else {
+            vec![(number.to_string(), Axis::ALL[0])]
+        }
     }
 
     /// The number that the control gives a parameter, without the mark of an inverted bit.
@@ -158,21 +238,22 @@ impl Parameters {
         Some(number)
     }
 
-    /// The parameter with a number of this control, with its name.
+    /// The parameter with a number of this control, with its name; the value of the axis that the number names,
+    /// else of the first.
     pub fn find(&self, number: &str) -> Option<(String, Parameter, f64)> {
-        let (name, parameter) = table().iter().find(|(_, p)| {
-            p.numbers.get(&self.map).is_some_and(|n| normal(n.trim_start_matches('!')) == normal(number))
-        })?;
-        Some((name.clone(), parameter.clone(), self.value(name)))
+        let (name, parameter, axis) = self.look_up(number)?;
+        let value = self.axis_value(name, axis.unwrap_or(Axis::ALL[0]));
+        Some((name.clone(), parameter.clone(), value))
     }
 
-    /// Every parameter of this control: number, name, table entry, value.
+    /// Every parameter of this control: number, name, table entry, value; for each axis where they differ by axis.
     pub fn all(&self) -> Vec<(String, String, Parameter, f64)> {
         let mut all: Vec<_> = table()
             .iter()
-            .filter_map(|(name, p)| {
-                let number = p.numbers.get(&self.map)?.trim_start_matches('!').to_string();
-                Some((number, name.clone(), p.clone(), self.value(name)))
+            .flat_map(|(name, parameter)| {
+                self.addresses(parameter).into_iter().map(|(number, axis)| {
+                    (number, name.clone(), parameter.clone(), self.axis_value(name, axis))
+                })
             })
             .collect();
         all.sort_by(|a, b| a.0.cmp(&b.0));
@@ -215,5 +296,17 @@ mod tests {
         assert!(matches!(parameters.set("3401#0", "2"), Err(ParameterFault::Value { .. })));
         assert!(matches!(parameters.set("5130", "-1"), Err(ParameterFault::Value { .. })));
         assert!(matches!(parameters.set("5130", "ten"), Err(ParameterFault::Value { .. })));
+    }
+
+    #[test]
+    fn a_parameter_of_each_axis_is_set_by_number_and_axis() {
+        let mut parameters = Control::load("fanuc-0i-tf").expect("control").parameters;
+        parameters.set("1221.z", "-12.5").expect("known");
+        assert_eq!(parameters.axis_value("work-zero-1", Axis::Z), -12.5);
+        assert_eq!(parameters.axis_value("work-zero-1", Axis::X), 0.0);
+        let fault = parameters.set("1221", "1").expect_err("no axis");
+        assert_eq!(fault, ParameterFault::Axis { number: "1221".to_string(), example: "1221.X".to_string() });
+        assert!(matches!(parameters.set("1221.Q", "1"), Err(ParameterFault::Unknown { .. })));
+        assert!(matches!(parameters.set("3410.X", "1"), Err(ParameterFault::Unknown { .. })));
     }
 }

@@ -93,6 +93,14 @@ policies! {
         /// Arcs too.
         AnyMotion,
     }
+    /// What a positive workpiece shift does. From memory: a manual's example sets +1 where the position should
+    /// read one more, that is, the zero goes the other way; the external offset does not.
+    workpiece_shift: WorkpieceShift {
+        /// It is added to the coordinates of the tool, so that the zero moves the other way.
+        AddsToCoordinates,
+        /// It moves the zero, as the external offset does.
+        MovesZero,
+    }
     /// How the roughing cycle knows whether the figure has pockets.
     cycle_type: CycleType {
         /// Both axes in the figure's first block mean pockets.
@@ -246,6 +254,8 @@ pub struct Limits {
     pub tool_digits: u8,
     /// Highest offset number.
     pub offset_number_max: u32,
+    /// Additional work coordinate systems.
+    pub additional_work_systems: u16,
     /// Deepest nesting of subprograms.
     pub call_depth_max: u8,
     /// Blocks without a move that may stand between a corner and the line it leads to.

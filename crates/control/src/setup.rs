@@ -143,7 +143,8 @@ pub struct Setup {
     pub control: Option<String>,
     /// The machine, by the name of its file in `data/machines`.
     pub machine: Option<String>,
-    /// Parameters by the control's numbers.
+    /// Parameters by the control's numbers; for one that each axis has its own of, `1221 = { X = …, Z = … }` or
+    /// `1221.X = …`.
     #[serde(default)]
     pub parameters: BTreeMap<String, toml::Value>,
     /// Overrides of single machine values.
@@ -155,7 +156,9 @@ pub struct Setup {
     /// Tool offsets by number.
     #[serde(default)]
     pub offsets: BTreeMap<String, Offset>,
-    /// Work coordinate systems 1 to 6: their zeros, measured from the first one's, mm, X as a diameter.
+    /// Stored zeros, mm, X as a diameter: `G54` to `G59`, `"G54.1 P1"` and so on, the external offset `EXT` and
+    /// the workpiece shift `SHIFT`. They are what the control stores, counted from the machine's `reference`: with
+    /// that at X0 Z0 they are true machine coordinates.
     #[serde(default)]
     pub work: BTreeMap<String, AxisPair>,
 }
@@ -167,6 +170,17 @@ pub struct SetupFault {
     pub message: String,
     /// Line from 1, or 0.
     pub line: u32,
+}
+
+/// A value as a user would type it; the name of its kind when it is none, which is refused as no number.
+fn typed(value: &toml::Value) -> String {
+    match value {
+        toml::Value::Integer(value) => value.to_string(),
+        toml::Value::Float(value) => value.to_string(),
+        toml::Value::Boolean(value) => u8::from(*value).to_string(),
+        toml::Value::String(value) => value.clone(),
+        other => other.type_str().to_string(),
+    }
 }
 
 /// Names of the machines in `data/machines`.
@@ -192,17 +206,17 @@ impl Setup {
     }
 
     /// Parameters as number and value, in words as a user would type them.
-    pub fn parameter_words(&self) -> impl Iterator<Item = (&str, String)> {
-        self.parameters.iter().map(|(number, value)| {
-            let value = match value {
-                toml::Value::Integer(value) => value.to_string(),
-                toml::Value::Float(value) => value.to_string(),
-                toml::Value::Boolean(value) => u8::from(*value).to_string(),
-                toml::Value::String(value) => value.clone(),
-                other => other.type_str().to_string(),
-            };
-            (number.as_str(), value)
-        })
+    pub fn parameter_words(&self) -> Vec<(String, String)> {
+        let mut words = Vec::new();
+        for (number, value) in &self.parameters {
+            match value {
+                toml::Value::Table(axes) => {
+                    words.extend(axes.iter().map(|(axis, value)| (format!("{number}.{axis}"), typed(value))));
+                }
+                value => words.push((number.clone(), typed(value))),
+            }
+        }
+        words
     }
 
     /// The machine with its overrides.
@@ -270,6 +284,15 @@ mod tests {
         let fault = Setup::parse("control = \"x\"\nmachin = \"y\"\n").expect_err("unknown key");
         assert_eq!(fault.line, 2);
         assert!(fault.message.contains("machin"), "{}", fault.message);
+    }
+
+    #[test]
+    fn a_parameter_of_each_axis_is_a_table() {
+        let setup =
+            Setup::parse("[parameters]\n5130 = 10\n1221 = { X = -1.5, Z = 2 }\n1241.Z = 3\n").expect("setup");
+        let words = setup.parameter_words();
+        let words: Vec<_> = words.iter().map(|(number, value)| format!("{number}={value}")).collect();
+        assert_eq!(words, ["1221.X=-1.5", "1221.Z=2", "1241.Z=3", "5130=10"]);
     }
 
     #[test]

@@ -1,105 +1,15 @@
-//! Coordinate systems, and target points from absolute and incremental words.
+//! Target points from absolute and incremental words.
 
 use turnwright_control::policy::AxisWordConflict;
-use turnwright_control::{AxisPair, Setup, SetupFault};
 use turnwright_diagnostics::Diagnostic;
 use turnwright_syntax::{Block, Word};
-use turnwright_units::{
-    Diameter, Displacement, LeastIncrement, Length, MachineTurret, Position, Radius, WorkTip,
-};
+use turnwright_units::{Length, Position, WorkTip};
 
-use crate::machine::{Core, Zeros};
+use crate::machine::Core;
 use crate::report::Alarm;
 use crate::words::Role;
 
-fn displacement(pair: AxisPair) -> Result<Displacement<MachineTurret>, SetupFault> {
-    let length = |mm: f64| {
-        Length::from_mm_rounded(mm, LeastIncrement::METRIC_C)
-            .filter(|length| length.abs() < Length::from_mm(1_000_000))
-    };
-    match (length(pair.x), length(pair.z)) {
-        (Some(x), Some(z)) => Ok(Displacement::new(Diameter(x).to_radius(), z)),
-        _ => Err(SetupFault { message: format!("X{} Z{} is out of range", pair.x, pair.z), line: 0 }),
-    }
-}
-
-impl Zeros {
-    pub(crate) fn new(setup: &Setup) -> Result<Self, SetupFault> {
-        let reference = displacement(setup.machine()?.reference)?;
-        let mut work = [Displacement::new(Radius::ZERO, Length::ZERO); 6];
-        for (name, pair) in &setup.work {
-            let number: usize = name.trim_start_matches(['G', 'g']).parse().unwrap_or(0);
-            match work.get_mut(number.wrapping_sub(54)) {
-                Some(slot) => *slot = displacement(*pair)?,
-                None => {
-                    let message = format!("[work] has no coordinate system {name}; they are G54 to G59");
-                    return Err(SetupFault { message, line: 0 });
-                }
-            }
-        }
-        let mut offsets = Vec::new();
-        for (name, offset) in &setup.offsets {
-            let Ok(number) = name.parse() else {
-                let message = format!("[offsets] has no offset {name}; they are numbers");
-                return Err(SetupFault { message, line: 0 });
-            };
-            displacement(offset.geometry)?;
-            displacement(offset.wear)?;
-            offsets.push((number, *offset));
-        }
-        // The reference point is machine zero.
-        Ok(Self { base: Displacement::new(-reference.x, -reference.z), work, offsets })
-    }
-}
-
 impl Core {
-    /// From machine coordinates to the zero of the work system with every shift in force.
-    fn zero(&self) -> Displacement<MachineTurret> {
-        let mut x = self.zeros.base.x + self.zeros.work[self.modal.work].x + self.modal.preset.x;
-        let mut z = self.zeros.base.z + self.zeros.work[self.modal.work].z + self.modal.preset.z;
-        let geometry =
-            if self.settings.geometry_by_tool_number { self.modal.tool } else { self.modal.offset };
-        for (number, offset) in &self.zeros.offsets {
-            for (applies, pair) in
-                [(geometry == *number, offset.geometry), (self.modal.offset == *number, offset.wear)]
-            {
-                if applies
-                    && *number != 0
-                    && let Ok(shift) = displacement(pair)
-                {
-                    x = x + shift.x;
-                    z += shift.z;
-                }
-            }
-        }
-        Displacement::new(x, z)
-    }
-
-    /// Where the reference point lies in the work system in force.
-    pub(crate) fn reference_point(&self) -> Position<WorkTip> {
-        let zero = self.zero();
-        Position::new(-zero.x, -zero.z)
-    }
-
-    /// The tool stands at the reference point before the program starts.
-    pub(crate) fn start_at_reference(&mut self) {
-        self.modal.position = self.reference_point();
-        self.tip = self.modal.position;
-    }
-
-    /// Changes a shift; the tool stays where it is and has new coordinates.
-    pub(crate) fn with_new_zero(&mut self, change: impl FnOnce(&mut Self)) {
-        let before = self.zero();
-        change(self);
-        let after = self.zero();
-        let place = self.modal.position;
-        self.modal.position = Position::new(place.x + before.x - after.x, place.z + before.z - after.z);
-        if before != after {
-            self.tip = Position::new(self.tip.x + before.x - after.x, self.tip.z + before.z - after.z);
-            self.emit(turnwright_canon::Action::Relocate { to: self.tip, others: None });
-        }
-    }
-
     /// The end point that the X, Z, U and W words of a block ask for, from the present position.
     #[inline]
     pub(crate) fn target(&mut self, block: &Block) -> Result<Position<WorkTip>, Alarm> {

@@ -33,6 +33,7 @@ mod spindle;
 mod text;
 mod tool;
 mod words;
+mod zeros;
 
 pub use functions::implemented_functions;
 pub use in_force::GROUPS;

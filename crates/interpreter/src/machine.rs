@@ -3,11 +3,11 @@
 use std::collections::{HashSet, VecDeque};
 
 use turnwright_canon::{Command, CycleOrigin};
-use turnwright_control::{Control, Offset, Setup, SetupFault};
+use turnwright_control::{Control, Setup, SetupFault};
 use turnwright_cycles::Element;
 use turnwright_diagnostics::{Diagnostic, SourceId};
 use turnwright_syntax::Block;
-use turnwright_units::{Displacement, Length, MachineTurret, Position, Radius, SurfaceSpeed, WorkTip};
+use turnwright_units::{Length, Position, Radius, SurfaceSpeed, WorkTip};
 
 use crate::Environment;
 use crate::auxiliary::Waiting;
@@ -22,6 +22,7 @@ use crate::moves::ActiveCycle;
 use crate::parts::Parts;
 use crate::report::Alarm;
 use crate::text::{Cursor, Line, Text};
+use crate::zeros::Zeros;
 
 /// What one step gave.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,17 +73,6 @@ pub(crate) struct BlockPlace {
 pub(crate) struct Capture {
     pub(crate) elements: Vec<Element>,
     pub(crate) range: FigureRange,
-}
-
-/// Zeros of the coordinate systems, as the setup gives them.
-#[derive(Clone, Debug)]
-pub(crate) struct Zeros {
-    /// From machine zero to the first work zero.
-    pub(crate) base: Displacement<MachineTurret>,
-    /// The six systems, measured from the first's.
-    pub(crate) work: [Displacement<MachineTurret>; 6],
-    /// Tool offsets by number: geometry and wear.
-    pub(crate) offsets: Vec<(u32, Offset)>,
 }
 
 /// Everything but the block buffer, so that functions can read the block while they change the rest.
@@ -160,7 +150,7 @@ impl Interpreter {
             control.policies.decimal_rule == turnwright_control::policy::DecimalRule::AlwaysCalculator;
         let settings = Settings::new(&control.parameters, always, control.limits.number_digits);
         let dispatch = Dispatch::new(&control);
-        let zeros = Zeros::new(setup)?;
+        let zeros = Zeros::new(&control, setup)?;
         let bit = |name| control.parameters.bit(name);
         let modal = Modal {
             position: Position::new(Radius::ZERO, Length::ZERO),
@@ -177,7 +167,6 @@ impl Interpreter {
             tool: 0,
             offset: 0,
             work: 0,
-            preset: Displacement::new(Radius::ZERO, Length::ZERO),
             cycle: SingleCycle::default(),
             is_incremental: false,
             in_force: InForce::new(dispatch.codes_at_power_on),

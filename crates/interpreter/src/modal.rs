@@ -2,9 +2,7 @@
 
 use turnwright_canon::SpindleState;
 use turnwright_control::Parameters;
-use turnwright_units::{
-    Displacement, LeastIncrement, Length, MachineTurret, Position, Radius, Rpm, SurfaceSpeed, WorkTip,
-};
+use turnwright_units::{LeastIncrement, Length, Position, Radius, Rpm, SurfaceSpeed, WorkTip};
 
 use crate::functions::FunctionId;
 use crate::in_force::InForce;
@@ -53,10 +51,8 @@ pub(crate) struct Modal {
     pub(crate) spindle: SpindleState,
     pub(crate) tool: u32,
     pub(crate) offset: u32,
-    /// Work coordinate system, 0 to 5.
+    /// Work coordinate system: 0 to 5 are the standard ones, the additional ones follow.
     pub(crate) work: usize,
-    /// Shift by coordinate setting: work zero moved by this.
-    pub(crate) preset: Displacement<MachineTurret>,
     pub(crate) cycle: SingleCycle,
     /// Systems B and C: X and Z are increments.
     pub(crate) is_incremental: bool,

@@ -1,7 +1,8 @@
 //! The manual as a test: every Markdown file in `fixtures/interpreter` is a chapter, every `nc` block in it a
 //! program, and the block after it what comes out.
 //!
-//! A block opened with `nc` takes words: a control (`fanuc-0i-tf`), parameters (`3401#0=1`), `skip=1`. The
+//! A block opened with `nc` takes words: a control (`fanuc-0i-tf`), parameters (`3401#0=1`), `skip=1`. A block
+//! `setup` before it is its setup file. The
 //! following block is `listing` (commands), `diagnostics` (alarms and warnings), or both one after the other; a
 //! program without a `diagnostics` block must have no alarm. `TURNWRIGHT_BLESS=1 cargo test -p
 //! turnwright-interpreter --test fixtures` rewrites the expected blocks; read the difference as behaviour.
@@ -46,6 +47,7 @@ fn check(text: &str, name: &str, failures: &mut Vec<String>) -> (String, usize) 
     let mut programs = 0;
     let mut lines = text.lines().enumerate().peekable();
     let mut last: Option<(support::Run, usize, bool)> = None;
+    let mut setup = String::new();
     let settle = |last: &mut Option<(support::Run, usize, bool)>, failures: &mut Vec<String>| {
         if let Some((run, line, saw_diagnostics)) = last.take()
             && !saw_diagnostics
@@ -73,8 +75,13 @@ fn check(text: &str, name: &str, failures: &mut Vec<String>) -> (String, usize) 
             Some("nc") => {
                 settle(&mut last, failures);
                 programs += 1;
-                last = Some((run(body.as_bytes(), &conditions(words)), number + 1, false));
+                let conditions = Conditions { setup: std::mem::take(&mut setup), ..conditions(words) };
+                last = Some((run(body.as_bytes(), &conditions), number + 1, false));
                 blessed.push_str(&body);
+            }
+            Some("setup") => {
+                blessed.push_str(&body);
+                setup = body;
             }
             Some(kind @ ("listing" | "diagnostics")) => {
                 let (run, _, saw) =

@@ -24,7 +24,7 @@ fn run_file(path: &Path) -> Run {
     if let Ok(setup) = fs::read_to_string(path.with_extension("toml")) {
         let parsed = Setup::parse(&setup).unwrap_or_else(|fault| panic!("{fault:?}"));
         for (number, value) in parsed.parameter_words() {
-            conditions = conditions.with(number, &value);
+            conditions = conditions.with(&number, &value);
         }
     }
     run(&text, &conditions)

@@ -267,8 +267,9 @@ pub(super) fn parameters(control: &Control, speech: Speech) -> Vec<ShownParamete
             let mut probe = control.parameters.clone();
             let is_inverted = is_bit && probe.set(&number, "0").is_ok() && probe.bit(&key);
             let value = if is_inverted { 1.0 - value } else { value };
+            let name = parameter.name(speech.language);
             ShownParameter {
-                title: parameter.name(speech.language).to_string(),
+                title: number.split_once('.').map_or(name.to_string(), |(_, axis)| format!("{name}, {axis}")),
                 effect: parameter.effect(speech.language).to_string(),
                 unit: parameter.unit,
                 value: value.to_string(),

@@ -25,8 +25,8 @@ fn coordinate_setting(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm>
         let there = core.target(call.block)?;
         let here = core.modal.position;
         core.with_new_zero(|core| {
-            let preset = core.modal.preset;
-            core.modal.preset = Displacement::new(preset.x + here.x - there.x, preset.z + here.z - there.z);
+            let preset = core.zeros.preset;
+            core.zeros.preset = Displacement::new(preset.x + here.x - there.x, preset.z + here.z - there.z);
         });
     }
     Ok(())

@@ -25,7 +25,7 @@ fn reference_return(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
         return Ok(());
     }
     let by_way_of = core.target(call.block)?;
-    let home = core.reference_point();
+    let home = core.to_work(core.zeros.reference[0]);
     let to = Position::new(
         if present & letters(b"XU") != 0 { home.x } else { by_way_of.x },
         if present & letters(b"ZW") != 0 { home.z } else { by_way_of.z },

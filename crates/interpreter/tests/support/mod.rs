@@ -61,10 +61,10 @@ impl Conditions {
 /// Runs a program to its end; refuses to run for ever.
 pub fn run(text: &[u8], conditions: &Conditions) -> Run {
     let mut control = Control::load(&conditions.control).unwrap_or_else(|fault| panic!("{fault:?}"));
-    for (number, value) in &conditions.parameters {
+    let setup = Setup::parse(&conditions.setup).unwrap_or_else(|fault| panic!("{fault:?}"));
+    for (number, value) in setup.parameter_words().iter().chain(&conditions.parameters) {
         control.parameters.set(number, value).unwrap_or_else(|fault| panic!("{fault:?}"));
     }
-    let setup = Setup::parse(&conditions.setup).unwrap_or_else(|fault| panic!("{fault:?}"));
     let options = Options { blocks_max: 200_000 };
     let mut interpreter = Interpreter::new(control.clone(), &setup, SourceId(0), options)
         .unwrap_or_else(|fault| panic!("{fault:?}"));
