@@ -20,7 +20,8 @@ pub use functions::{CodeSystem, FunctionEntry, Functions, Group, parse_code};
 pub use messages::{Language, MessageText, Messages};
 pub use parameters::{Axis, Parameter, ParameterFault, Parameters};
 pub use setup::{
-    AxisPair, LinearAxis, Machine, MachineAxes, Offset, RotaryAxis, Setup, SetupFault, machine_names,
+    AxisPair, LinearAxis, Machine, MachineAxes, Offset, OffsetRow, RotaryAxis, Setup, SetupFault,
+    machine_names,
 };
 pub use suggest::nearest;
 

@@ -63,6 +63,36 @@ policies! {
         /// It is cancelled.
         Cancelled,
     }
+    /// What decides whether a tool offset shifts the coordinates or moves the tool.
+    offset_action: OffsetAction {
+        /// Geometry and wear each by a parameter of its own.
+        ByPart,
+        /// One parameter for the whole offset.
+        Whole,
+    }
+    /// A tool word without its leading zeros.
+    short_tool_word: ShortToolWord {
+        /// Leading zeros may be left out.
+        Accepted,
+        /// Station and offset are written with all their digits.
+        Refused,
+    }
+    /// What programs may write with data setting, and how they name parameters.
+    data_setting: DataSetting {
+        /// Offsets and work zeros; parameters with L50.
+        WithOldCode,
+        /// Offsets and work zeros; parameters with L50 or L52.
+        WithEitherCode,
+        /// Tool life with L3, and with L52 parameters, which are read too; no offsets.
+        ListsOnly,
+    }
+    /// A T word in a block that sets data.
+    tool_in_data_setting: ToolInDataSetting {
+        /// Refused when the parameter for T in setting blocks says so.
+        ByParameter,
+        /// No word of data setting.
+        Foreign,
+    }
     /// An arc whose end point does not lie on the circle given by its centre.
     arc_end_error: ArcEndError {
         /// An arc with the start radius, then a straight line to the end point.
@@ -256,6 +286,8 @@ pub struct Limits {
     pub offset_number_max: u32,
     /// Additional work coordinate systems.
     pub additional_work_systems: u16,
+    /// Digits of a value in the offset tables.
+    pub offset_value_digits: u8,
     /// Deepest nesting of subprograms.
     pub call_depth_max: u8,
     /// Blocks without a move that may stand between a corner and the line it leads to.

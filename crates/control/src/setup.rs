@@ -123,16 +123,38 @@ impl MachineAxes {
     }
 }
 
+/// One row of an offset table, mm, as the control's screen shows it: X is a diameter unless the parameter for
+/// X offsets makes it a radius.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OffsetRow {
+    /// X.
+    #[serde(default)]
+    pub x: f64,
+    /// Y.
+    #[serde(default)]
+    pub y: f64,
+    /// Z.
+    #[serde(default)]
+    pub z: f64,
+    /// Nose radius.
+    #[serde(default)]
+    pub r: f64,
+}
+
 /// A tool offset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Offset {
-    /// Geometry, mm, X as a diameter.
+    /// Geometry.
     #[serde(default)]
-    pub geometry: AxisPair,
-    /// Wear, mm, X as a diameter.
+    pub geometry: OffsetRow,
+    /// Wear.
     #[serde(default)]
-    pub wear: AxisPair,
+    pub wear: OffsetRow,
+    /// Direction of the imaginary tip, 0 to 9; one value for both tables.
+    #[serde(default)]
+    pub tip: u8,
 }
 
 /// What a setup file says.

@@ -269,6 +269,9 @@ impl Core {
                 }
             }
         }
+        if self.untaken.is_some() && block.present() & Block::bit(b'T') != 0 {
+            self.end_of_tool_block(block.word(b'T'))?;
+        }
         let line = self.at.line;
         if waiting_corner && self.corner.as_mut().is_some_and(|corner| corner.waits_too_long(line)) {
             return Err(self.corner_without_next());
@@ -431,6 +434,10 @@ impl Core {
             self.speed_word(word)?;
         }
         if let Some(word) = block.word(b'T') {
+            let refuses = self.settings.offsets.refuses_tool_in_setting;
+            if refuses && codes.one_shot.is_some_and(|one_shot| one_shot.id.get().sets_data) {
+                return Err(self.alarm("tool-not-allowed-here", word));
+            }
             self.tool_word(word)?;
         }
         if let Some(state) = auxiliary.spindle_before() {

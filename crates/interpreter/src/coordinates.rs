@@ -24,6 +24,9 @@ impl Core {
         let mut to = from;
         const CROSS: u32 = Block::bit(b'X') | Block::bit(b'U');
         const ALONG: u32 = Block::bit(b'Z') | Block::bit(b'W');
+        if self.untaken.is_some() {
+            self.take_movement(block.present() & CROSS != 0, block.present() & ALONG != 0);
+        }
         if block.present() & CROSS != 0 {
             let (word, is_increment) = self.axis_word(block, b'X', b'U')?;
             to.x = if is_increment {
@@ -44,7 +47,7 @@ impl Core {
 
     /// The word that counts for an axis, and whether it is an increment.
     #[inline]
-    fn axis_word<'b>(
+    pub(crate) fn axis_word<'b>(
         &mut self,
         block: &'b Block,
         absolute: u8,

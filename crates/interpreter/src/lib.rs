@@ -26,6 +26,7 @@ pub mod limits;
 mod machine;
 mod modal;
 mod moves;
+mod offsets;
 mod parts;
 mod report;
 mod reset;

@@ -7,7 +7,7 @@ use turnwright_control::{Control, Setup, SetupFault};
 use turnwright_cycles::Element;
 use turnwright_diagnostics::{Diagnostic, SourceId};
 use turnwright_syntax::Block;
-use turnwright_units::{Length, Position, Radius, SurfaceSpeed, WorkTip};
+use turnwright_units::{Displacement, Length, Position, Radius, SurfaceSpeed, WorkTip};
 
 use crate::Environment;
 use crate::auxiliary::Waiting;
@@ -19,6 +19,7 @@ use crate::in_force::{InForce, MOTION};
 use crate::limits;
 use crate::modal::{Modal, Settings, SingleCycle, SpeedMode};
 use crate::moves::ActiveCycle;
+use crate::offsets::{OffsetInForce, OffsetTables};
 use crate::parts::Parts;
 use crate::report::Alarm;
 use crate::text::{Cursor, Line, Text};
@@ -83,6 +84,7 @@ pub(crate) struct Core {
     pub(crate) dispatch: Dispatch,
     pub(crate) options: Options,
     pub(crate) zeros: Zeros,
+    pub(crate) offsets: OffsetTables,
     pub(crate) modal: Modal,
     pub(crate) text: Text,
     pub(crate) line: Line,
@@ -98,6 +100,8 @@ pub(crate) struct Core {
     pub(crate) out: VecDeque<Command>,
     /// End of the last move given out.
     pub(crate) tip: Position<WorkTip>,
+    /// From there to the programmed place: a movement of the tool offset that is still to be made.
+    pub(crate) untaken: Option<Displacement<WorkTip>>,
     pub(crate) active: Option<ActiveCycle>,
     /// What the block of the cycle in work does when the cycle has run.
     pub(crate) waiting: Option<Waiting>,
@@ -151,6 +155,7 @@ impl Interpreter {
         let settings = Settings::new(&control.parameters, always, control.limits.number_digits);
         let dispatch = Dispatch::new(&control);
         let zeros = Zeros::new(&control, setup)?;
+        let offsets = OffsetTables::new(setup)?;
         let bit = |name| control.parameters.bit(name);
         let modal = Modal {
             position: Position::new(Radius::ZERO, Length::ZERO),
@@ -166,6 +171,8 @@ impl Interpreter {
             spindle: Default::default(),
             tool: 0,
             offset: 0,
+            geometry: 0,
+            offset_in_force: OffsetInForce::NONE,
             work: 0,
             cycle: SingleCycle::default(),
             is_incremental: false,
@@ -179,7 +186,9 @@ impl Interpreter {
             dispatch,
             options,
             zeros,
+            offsets,
             tip: modal.position,
+            untaken: None,
             modal,
             text: Text::new(source),
             line: Line::default(),

@@ -6,6 +6,7 @@ use turnwright_units::{LeastIncrement, Length, Position, Radius, Rpm, SurfaceSpe
 
 use crate::functions::FunctionId;
 use crate::in_force::InForce;
+use crate::offsets::{OffsetInForce, OffsetSettings};
 
 /// Feed per minute or per revolution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +52,10 @@ pub(crate) struct Modal {
     pub(crate) spindle: SpindleState,
     pub(crate) tool: u32,
     pub(crate) offset: u32,
+    /// Number of the geometry offset in force; that of the wear is `offset`.
+    pub(crate) geometry: u32,
+    /// What the offset does, with the values that it had when it was called.
+    pub(crate) offset_in_force: OffsetInForce,
     /// Work coordinate system: 0 to 5 are the standard ones, the additional ones follow.
     pub(crate) work: usize,
     pub(crate) cycle: SingleCycle,
@@ -117,8 +122,7 @@ pub(crate) struct Settings {
     pub(crate) type_by_first_block: bool,
     pub(crate) no_semi_finish: bool,
     pub(crate) rapid_escape: bool,
-    pub(crate) offset_digits_one: bool,
-    pub(crate) geometry_by_tool_number: bool,
+    pub(crate) offsets: OffsetSettings,
 }
 
 impl Settings {
@@ -180,8 +184,7 @@ impl Settings {
             type_by_first_block: bit("type-by-first-block"),
             no_semi_finish: bit("no-semi-finish-type-one"),
             rapid_escape: bit("rapid-escape"),
-            offset_digits_one: bit("offset-digits-one"),
-            geometry_by_tool_number: bit("geometry-by-tool-number"),
+            offsets: OffsetSettings::new(parameters),
         }
     }
 }

@@ -124,6 +124,9 @@ impl Core {
         if self.capture.is_some() {
             return self.capture_move(to, &action);
         }
+        if self.untaken.is_some() {
+            return self.emit_move_short(to, action);
+        }
         let goes = to != self.tip || matches!(action, Action::Feed { shape: Shape::Arc { .. }, .. });
         self.tip = to;
         if goes {
@@ -168,6 +171,8 @@ impl Core {
             let diagnostic = Diagnostic::error("cycle-move-limit").at(self.block_place());
             return Err(self.finish(diagnostic.with("limit", limits::CYCLE_MOVES_MAX as i64)));
         }
+        // The first move of the cycle takes the whole movement of the offset along.
+        self.untaken = None;
         self.active = Some(ActiveCycle { moves, code, at: self.at, lines, passes_before, moves_made: 0 });
         Ok(())
     }

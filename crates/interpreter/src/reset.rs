@@ -108,7 +108,7 @@ impl Core {
         self.frames.clear();
         self.roughed.clear();
         self.finished_first.clear();
-        self.modal.position = self.tip;
+        self.reset_offset();
     }
 
     /// Goes back to the first block of the text.

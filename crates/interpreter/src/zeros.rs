@@ -9,7 +9,7 @@
 
 use turnwright_canon::Action;
 use turnwright_control::policy::WorkpieceShift;
-use turnwright_control::{Axis, AxisPair, Control, Offset, Setup, SetupFault, nearest};
+use turnwright_control::{Axis, AxisPair, Control, Setup, SetupFault, nearest};
 use turnwright_units::{
     Diameter, Displacement, LeastIncrement, Length, MachineTurret, Position, Radius, WorkTip,
 };
@@ -73,8 +73,6 @@ pub(crate) struct Zeros {
     pub(crate) local: Displacement<MachineTurret>,
     /// The reference points 1 to 4.
     pub(crate) reference: [Position<MachineTurret>; 4],
-    /// Tool offsets by number: geometry and wear.
-    pub(crate) offsets: Vec<(u32, Offset)>,
 }
 
 fn displacement(pair: AxisPair) -> Result<Displacement<MachineTurret>, SetupFault> {
@@ -127,7 +125,6 @@ impl Zeros {
             preset: NOTHING,
             local: NOTHING,
             reference,
-            offsets: Vec::new(),
         };
         for (name, pair) in &setup.work {
             let value = displacement(*pair)?;
@@ -139,15 +136,6 @@ impl Zeros {
                 }
                 None => return Err(zeros.unknown_system(name)),
             }
-        }
-        for (name, offset) in &setup.offsets {
-            let Ok(number) = name.parse() else {
-                let message = format!("[offsets] has no offset {name}; they are numbers");
-                return Err(SetupFault { message, line: 0 });
-            };
-            displacement(offset.geometry)?;
-            displacement(offset.wear)?;
-            zeros.offsets.push((number, *offset));
         }
         Ok(zeros)
     }
@@ -223,40 +211,33 @@ impl Core {
     /// From machine coordinates to the zero of the work system with every shift in force.
     pub(crate) fn zero(&self) -> Displacement<MachineTurret> {
         let work = self.zeros.of_work(self.modal.work);
-        let (mut x, mut z) = (work.x, work.z);
-        let geometry =
-            if self.settings.geometry_by_tool_number { self.modal.tool } else { self.modal.offset };
-        for (number, offset) in &self.zeros.offsets {
-            for (applies, pair) in
-                [(geometry == *number, offset.geometry), (self.modal.offset == *number, offset.wear)]
-            {
-                if applies
-                    && *number != 0
-                    && let Ok(shift) = displacement(pair)
-                {
-                    x = x + shift.x;
-                    z += shift.z;
-                }
-            }
-        }
-        Displacement::new(x, z)
+        let shift = self.modal.offset_in_force.shift;
+        Displacement::new(work.x + shift.x, work.z + shift.z)
     }
 
-    /// A place of the work system in force, in machine coordinates.
+    /// From machine coordinates to those of the tip: the zero, and the way that the offset has moved the tool.
+    fn tip_zero(&self) -> Displacement<MachineTurret> {
+        let (zero, movement) = (self.zero(), self.modal.offset_in_force.movement);
+        Displacement::new(zero.x + movement.x, zero.z + movement.z)
+    }
+
+    /// A place of the tip in the work system in force, in machine coordinates.
     pub(crate) fn to_machine(&self, place: Position<WorkTip>) -> Position<MachineTurret> {
-        let zero = self.zero();
+        let zero = self.tip_zero();
         Position::new(place.x + zero.x, place.z + zero.z)
     }
 
-    /// A machine place in the work system in force.
+    /// The place of the tip in the work system in force while the turret stands at a machine place.
     pub(crate) fn to_work(&self, place: Position<MachineTurret>) -> Position<WorkTip> {
-        let zero = self.zero();
+        let zero = self.tip_zero();
         Position::new(place.x - zero.x, place.z - zero.z)
     }
 
     /// Where the tool is in machine coordinates, at the end of the block in work.
     pub(crate) fn machine_position(&self) -> Position<MachineTurret> {
-        self.to_machine(self.modal.position)
+        let place = self.modal.position;
+        let owed = self.untaken.unwrap_or(Displacement::new(Radius::ZERO, Length::ZERO));
+        self.to_machine(Position::new(place.x - owed.x, place.z - owed.z))
     }
 
     /// Where the tool is in the work system in force, at the end of the block in work.
@@ -283,17 +264,19 @@ impl Core {
         self.tip = self.modal.position;
     }
 
-    /// Changes a shift; the tool stays where it is and has new coordinates.
+    /// Changes a shift or the offset; the tool stays where it is and has new coordinates. A new movement of the
+    /// offset is owed.
     pub(crate) fn with_new_zero(&mut self, change: impl FnOnce(&mut Self)) {
-        let before = self.zero();
+        let (before, tip_before) = (self.zero(), self.tip_zero());
         change(self);
-        let after = self.zero();
-        if before != after {
-            let moved = |place: Position<WorkTip>| {
-                Position::new(place.x + before.x - after.x, place.z + before.z - after.z)
-            };
-            self.modal.position = moved(self.modal.position);
-            self.tip = moved(self.tip);
+        let (after, tip_after) = (self.zero(), self.tip_zero());
+        let (place, tip) = (self.modal.position, self.tip);
+        self.modal.position = Position::new(place.x + before.x - after.x, place.z + before.z - after.z);
+        if tip_before != tip_after {
+            self.tip = Position::new(tip.x + tip_before.x - tip_after.x, tip.z + tip_before.z - tip_after.z);
+            // What the program's place moved by and the tip's did not.
+            let (moved, tip_moved) = (self.modal.position - place, self.tip - tip);
+            self.owe_movement(moved.x - tip_moved.x, moved.z - tip_moved.z);
             self.emit(Action::Relocate { to: self.tip, others: None });
         }
     }

@@ -56,6 +56,11 @@ fn place(point: Point) -> Option<Position<WorkTip>> {
 
 fn arc(core: &mut Core, call: &mut Call<'_>, turn: Turn) -> Result<(), Alarm> {
     core.refuse_comma_words(call.block)?;
+    if core.untaken.is_some() {
+        // The way of the offset is no part of the arc.
+        core.warn_block("offset-moves-in-arc");
+        core.make_movement(call.word)?;
+    }
     let from = core.modal.position;
     let to = core.target(call.block)?;
     let Some(feed) = core.feed_in_force() else {

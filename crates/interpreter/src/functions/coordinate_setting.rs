@@ -14,7 +14,7 @@ use crate::machine::Core;
 use crate::report::Alarm;
 
 pub(super) static COORDINATE_SETTING: Function =
-    Function::one_shot("coordinate-setting", coordinate_setting).with_speed_limit();
+    Function::one_shot("coordinate-setting", coordinate_setting).with_speed_limit().setting_data();
 
 fn coordinate_setting(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     if let Some(word) = call.block.word(b'S') {

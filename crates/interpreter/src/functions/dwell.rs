@@ -16,8 +16,11 @@ use crate::machine::Core;
 use crate::modal::FeedMode;
 use crate::report::Alarm;
 
-pub(super) static DWELL: Function =
-    Function::one_shot("dwell", dwell).with_letters(b"P").allowed_in_figure().keeping_single_cycle();
+pub(super) static DWELL: Function = Function::one_shot("dwell", dwell)
+    .with_letters(b"P")
+    .allowed_in_figure()
+    .keeping_single_cycle()
+    .setting_data();
 
 /// Longest dwell, in thousandths of a second.
 const DWELL_MAX: u32 = 99_999_999;

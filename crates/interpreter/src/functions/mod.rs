@@ -7,6 +7,7 @@
 
 mod arc;
 mod coordinate_setting;
+mod data_setting;
 mod dwell;
 mod finishing;
 mod groove;
@@ -57,6 +58,8 @@ pub(crate) struct Function {
     pub(crate) takes_lead: bool,
     /// Its S is a speed limit.
     pub(crate) takes_speed_limit: bool,
+    /// A T word in its block is an alarm by parameter.
+    pub(crate) sets_data: bool,
     /// Runs again in blocks without axis words on some controls.
     pub(crate) repeats: bool,
     /// Leaves the end point of a single cycle in force.
@@ -88,6 +91,7 @@ impl Function {
             in_figure: false,
             takes_lead: false,
             takes_speed_limit: false,
+            sets_data: false,
             repeats: false,
             keeps_single_cycle: false,
             is_multiple_cycle: false,
@@ -133,6 +137,11 @@ impl Function {
 
     pub(crate) const fn with_speed_limit(mut self) -> Self {
         self.takes_speed_limit = true;
+        self
+    }
+
+    pub(crate) const fn setting_data(mut self) -> Self {
+        self.sets_data = true;
         self
     }
 
@@ -186,6 +195,8 @@ static ALL: &[&Function] = &[
     &modes::CUTTING_MODE,
     &modes::DOUBLE_TURRET_MIRROR_OFF,
     &coordinate_setting::COORDINATE_SETTING,
+    &data_setting::DATA_SETTING,
+    &data_setting::DATA_SETTING_END,
     &reference_return::REFERENCE_RETURN,
     &single_cycles::TURNING_CYCLE,
     &single_cycles::THREAD_CYCLE,

@@ -54,7 +54,13 @@ pub(super) static ABSOLUTE: Function = Function::mode("absolute", |core, _| incr
 pub(super) static INCREMENTAL: Function = Function::mode("incremental", |core, _| increments(core, true));
 
 fn units(core: &mut Core, is_inch: bool) -> Result<(), Alarm> {
+    let from = core.modal.increment(&core.settings);
     core.modal.is_inch = is_inch;
+    let to = core.modal.increment(&core.settings);
+    if from != to && !core.settings.offsets.converts_units && core.has_offset_values() {
+        core.warn_once("offsets-read-in-other-unit");
+        core.reread_offsets(from, to);
+    }
     Ok(())
 }
 

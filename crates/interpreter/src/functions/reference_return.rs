@@ -40,5 +40,6 @@ fn reference_return(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
         core.modal.position = place;
         core.emit_move(place, Action::Rapid { to: place, path: RapidPath::EachAxis, others: None })?;
     }
+    core.leave_out_movement(present & letters(b"XU") != 0, present & letters(b"ZW") != 0);
     Ok(())
 }
