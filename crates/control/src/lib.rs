@@ -18,7 +18,7 @@ use serde::Deserialize;
 
 pub use functions::{CodeSystem, FunctionEntry, Functions, Group, parse_code};
 pub use messages::{Language, MessageText, Messages};
-pub use parameters::{Axis, Parameter, ParameterFault, Parameters};
+pub use parameters::{Axis, Parameter, ParameterFault, Parameters, UnderNumber};
 pub use setup::{
     AxisPair, LinearAxis, Machine, MachineAxes, Offset, OffsetRow, RotaryAxis, Setup, SetupFault,
     machine_names,

@@ -63,6 +63,11 @@ impl Parameter {
         }
     }
 
+    /// Whether each axis has its own value.
+    pub const fn is_per_axis(&self) -> bool {
+        self.per_axis
+    }
+
     /// What it changes, in a language.
     pub fn effect(&self, language: Language) -> &str {
         match language {
@@ -98,6 +103,15 @@ pub enum ParameterFault {
         /// What is expected.
         expected: &'static str,
     },
+}
+
+/// What a control has under one number: a value, or some of the eight bits of a word.
+#[derive(Clone, Debug, Default)]
+pub struct UnderNumber {
+    /// The parameter that has the number to itself, and its name.
+    pub whole: Option<(&'static str, &'static Parameter)>,
+    /// The bits that are known.
+    pub bits: Vec<(u8, &'static Parameter)>,
 }
 
 /// The parameters of one control and their present values.
@@ -198,6 +212,23 @@ impl Parameters {
         Ok(())
     }
 
+    /// What this control has under a number without bit and axis; `None` when nothing is known of it here.
+    pub fn under_number(&self, number: u32) -> Option<UnderNumber> {
+        let mut found = UnderNumber::default();
+        for (name, parameter) in table() {
+            let Some(printed) = parameter.numbers.get(&self.map) else { continue };
+            let (word, bit) = printed.trim_start_matches('!').split_once('#').unwrap_or((printed, ""));
+            if word.parse() != Ok(number) {
+                continue;
+            }
+            match bit.parse() {
+                Ok(bit) => found.bits.push((bit, parameter)),
+                Err(_) => found.whole = Some((name, parameter)),
+            }
+        }
+        (found.whole.is_some() || !found.bits.is_empty()).then_some(found)
+    }
+
     /// The parameter that a number of this control names, and the axis when the number names one too.
     fn look_up(&self, number: &str) -> Option<(&'static String, &'static Parameter, Option<Axis>)> {
         let of_number = |number: &str| {
@@ -238,11 +269,26 @@ impl Parameters {
         Some(number)
     }
 
+    /// The value as the control's own screen has it: some bits have the opposite sense there.
+    fn shown_value(&self, name: &str, parameter: &Parameter, axis: Axis) -> f64 {
+        let value = self.axis_value(name, axis);
+        let is_inverted = parameter.numbers.get(&self.map).is_some_and(|number| number.starts_with('!'));
+        if is_inverted { 1.0 - value } else { value }
+    }
+
+    /// Sets a parameter by name, in the sense of its name: what data blocks of cycles do.
+    pub fn set_by_name(&mut self, name: &str, value: f64) {
+        debug_assert!(self.values.contains_key(name), "no parameter {name} in data/parameters.toml");
+        if let Some(values) = self.values.get_mut(name) {
+            values.fill(value);
+        }
+    }
+
     /// The parameter with a number of this control, with its name; the value of the axis that the number names,
     /// else of the first.
     pub fn find(&self, number: &str) -> Option<(String, Parameter, f64)> {
         let (name, parameter, axis) = self.look_up(number)?;
-        let value = self.axis_value(name, axis.unwrap_or(Axis::ALL[0]));
+        let value = self.shown_value(name, parameter, axis.unwrap_or(Axis::ALL[0]));
         Some((name.clone(), parameter.clone(), value))
     }
 
@@ -252,7 +298,8 @@ impl Parameters {
             .iter()
             .flat_map(|(name, parameter)| {
                 self.addresses(parameter).into_iter().map(|(number, axis)| {
-                    (number, name.clone(), parameter.clone(), self.axis_value(name, axis))
+                    let value = self.shown_value(name, parameter, axis);
+                    (number, name.clone(), parameter.clone(), value)
                 })
             })
             .collect();

@@ -197,6 +197,9 @@ impl Core {
     #[inline]
     pub(crate) fn execute(&mut self, block: &Block, environment: &mut dyn Environment) -> Result<(), Alarm> {
         self.has_started = true;
+        if self.data_list.is_some() {
+            return self.run_data_list(block);
+        }
         let depth = self.frames.len();
         if block.words.len() as u32 > block.present().count_ones() {
             self.repeated_addresses(block)?;

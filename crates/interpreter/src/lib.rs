@@ -18,6 +18,7 @@ mod auxiliary;
 mod block;
 mod coordinates;
 mod corner;
+mod data_list;
 mod figure;
 mod flow;
 mod functions;

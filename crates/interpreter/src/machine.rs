@@ -12,6 +12,7 @@ use turnwright_units::{Displacement, Length, Position, Radius, SurfaceSpeed, Wor
 use crate::Environment;
 use crate::auxiliary::Waiting;
 use crate::corner::PendingCorner;
+use crate::data_list::{DataList, ToolLife};
 use crate::figure::FigureRange;
 use crate::flow::{Frame, ProgramIndex};
 use crate::functions::{Dispatch, FunctionId};
@@ -102,6 +103,9 @@ pub(crate) struct Core {
     pub(crate) tip: Position<WorkTip>,
     /// From there to the programmed place: a movement of the tool offset that is still to be made.
     pub(crate) untaken: Option<Displacement<WorkTip>>,
+    /// The list that data setting has opened.
+    pub(crate) data_list: Option<DataList>,
+    pub(crate) tool_life: ToolLife,
     pub(crate) active: Option<ActiveCycle>,
     /// What the block of the cycle in work does when the cycle has run.
     pub(crate) waiting: Option<Waiting>,
@@ -189,6 +193,8 @@ impl Interpreter {
             offsets,
             tip: modal.position,
             untaken: None,
+            data_list: None,
+            tool_life: ToolLife::default(),
             modal,
             text: Text::new(source),
             line: Line::default(),

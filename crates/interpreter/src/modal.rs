@@ -126,6 +126,31 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
+    /// Writes into the parameters what programs have changed here: data blocks of cycles write parameters.
+    pub(crate) fn store(&self, parameters: &mut Parameters) {
+        let lengths = [
+            ("cycle-depth-of-cut", self.cut_depth),
+            ("cycle-escape", self.cut_escape),
+            ("pattern-relief-x", self.pattern_relief_x.0),
+            ("pattern-relief-z", self.pattern_relief_z),
+            ("groove-return", self.groove_return),
+            ("thread-minimum-depth", self.thread_minimum_depth.0),
+            ("thread-finishing-allowance", self.thread_finishing_allowance.0),
+        ];
+        for (name, length) in lengths {
+            parameters.set_by_name(name, length.to_mm());
+        }
+        let counts = [
+            ("pattern-passes", self.pattern_passes),
+            ("thread-finishing-passes", self.thread_finishing_passes),
+            ("thread-nose-angle", u32::from(self.thread_nose_angle_deg)),
+            ("thread-run-out", self.run_out_tenths),
+        ];
+        for (name, count) in counts {
+            parameters.set_by_name(name, f64::from(count));
+        }
+    }
+
     pub(crate) fn new(parameters: &Parameters, always_calculator: bool, digits: u8) -> Self {
         let bit = |name| parameters.bit(name);
         let mm = |name: &str| Length::from_nm((parameters.value(name) * 1e6).round() as i64);

@@ -105,6 +105,7 @@ impl Core {
         self.capture = None;
         self.corner = None;
         self.waiting = None;
+        self.data_list = None;
         self.frames.clear();
         self.roughed.clear();
         self.finished_first.clear();

@@ -53,6 +53,14 @@ impl WorkZero {
     }
 }
 
+/// Parameters of the standard work systems.
+const WORK_PARAMETERS: [&str; STANDARD_SYSTEMS] =
+    ["work-zero-1", "work-zero-2", "work-zero-3", "work-zero-4", "work-zero-5", "work-zero-6"];
+
+/// Parameters of the reference points.
+const REFERENCE_PARAMETERS: [&str; 4] =
+    ["reference-position-1", "reference-position-2", "reference-position-3", "reference-position-4"];
+
 /// No way at all.
 const NOTHING: Displacement<MachineTurret> = Displacement::new(Radius::ZERO, Length::ZERO);
 
@@ -101,15 +109,12 @@ impl Zeros {
     pub(crate) fn new(control: &Control, setup: &Setup) -> Result<Self, SetupFault> {
         let parameter = |name| displacement(pair(control, name));
         let mut systems = Vec::new();
-        for name in ["work-zero-1", "work-zero-2", "work-zero-3", "work-zero-4", "work-zero-5", "work-zero-6"]
-        {
+        for name in WORK_PARAMETERS {
             systems.push(parameter(name)?);
         }
         systems.resize(STANDARD_SYSTEMS + usize::from(control.limits.additional_work_systems), NOTHING);
         let mut reference = [Position::new(Radius::ZERO, Length::ZERO); 4];
-        let names =
-            ["reference-position-1", "reference-position-2", "reference-position-3", "reference-position-4"];
-        for (point, name) in reference.iter_mut().zip(names) {
+        for (point, name) in reference.iter_mut().zip(REFERENCE_PARAMETERS) {
             let place = parameter(name)?;
             *point = Position::new(place.x, place.z);
         }
@@ -138,6 +143,25 @@ impl Zeros {
             }
         }
         Ok(zeros)
+    }
+
+    /// Takes a parameter over that a program has written. The place of the tool is not told: call it inside
+    /// [`Core::with_new_zero`].
+    pub(crate) fn follow_parameter(&mut self, control: &Control, name: &str, axis: Option<Axis>) {
+        self.external_is_opposite = control.parameters.bit("external-offset-opposite");
+        let Some(axis) = axis else { return };
+        let value = Length::from_nm((control.parameters.axis_value(name, axis) * 1e6).round() as i64);
+        if let Some(system) = WORK_PARAMETERS.iter().position(|known| *known == name) {
+            self.set(WorkZero::System(system), axis, value);
+        } else if name == "work-zero-external" {
+            self.set(WorkZero::External, axis, value);
+        } else if let Some(point) = REFERENCE_PARAMETERS.iter().position(|known| *known == name) {
+            let place = &mut self.reference[point];
+            match axis {
+                Axis::X => place.x = Diameter(value).to_radius(),
+                Axis::Z => place.z = value,
+            }
+        }
     }
 
     fn unknown_system(&self, name: &str) -> SetupFault {

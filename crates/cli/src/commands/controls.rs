@@ -263,10 +263,6 @@ pub(super) fn parameters(control: &Control, speech: Speech) -> Vec<ShownParamete
     let all = control.parameters.all();
     all.into_iter()
         .map(|(number, key, parameter, value)| {
-            let is_bit = parameter.unit == "bit";
-            let mut probe = control.parameters.clone();
-            let is_inverted = is_bit && probe.set(&number, "0").is_ok() && probe.bit(&key);
-            let value = if is_inverted { 1.0 - value } else { value };
             let name = parameter.name(speech.language);
             ShownParameter {
                 title: number.split_once('.').map_or(name.to_string(), |(_, axis)| format!("{name}, {axis}")),

@@ -5,19 +5,30 @@
 //! for both tables. Lengths follow the unit and the decimal rule of the program; X is what the offset screen
 //! shows, a diameter by default.
 //!
-//! The new values act with the next T word, or at once by parameter (5001#6).
+//! The new values act with the next T word, or at once by parameter (5001#6). P0 is the workpiece shift.
+//!
+//! `G10 L2 P_ X(U)_ Z(W)_` writes a stored zero: P0 the external offset, P1 to P6 the standard work systems;
+//! `G10 L20 P_` the additional ones. It acts at once.
+//!
+//! `G10 L50` (parameters; newer controls L52) and `G10 L3` (tool life) open a list that `G11` closes: see
+//! `data_list.rs`.
 //!
 //! Source: data setting of both families; the forms of the newest generation are known at second hand.
 
+use turnwright_control::Axis;
 use turnwright_control::policy::{DataSetting, ToolInDataSetting};
 use turnwright_diagnostics::{Diagnostic, Severity};
 use turnwright_syntax::{Block, Word};
+use turnwright_units::Length;
 
 use super::Function;
 use crate::block::Call;
+use crate::data_list::DataList;
 use crate::machine::Core;
 use crate::offsets::{OffsetFault, OffsetField, OffsetTable};
 use crate::report::Alarm;
+use crate::words::Role;
+use crate::zeros::{STANDARD_SYSTEMS, WorkZero};
 
 pub(super) static DATA_SETTING: Function =
     Function::one_shot("data-setting", data_setting).with_letters(b"PLRCQYV").setting_data();
@@ -42,12 +53,30 @@ fn data_setting(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     {
         return Err(core.alarm("data-setting-words-illegal", word));
     }
-    match block.word(b'L') {
-        None if core.control.policies.data_setting == DataSetting::ListsOnly => {
+    let forms = core.control.policies.data_setting;
+    let list = match block.word(b'L') {
+        None if forms == DataSetting::ListsOnly => {
             return Err(core.alarm_at("data-setting-format", call.word));
         }
-        None => core.set_offset(block, call.word)?,
-        Some(word) => return Err(core.not_supported("data-setting", word)),
+        None => {
+            core.set_offset(block, call.word)?;
+            None
+        }
+        Some(word) => match (core.whole(word, 99)?, forms) {
+            (2 | 20, DataSetting::WithOldCode | DataSetting::WithEitherCode) => {
+                core.set_work_zeros(block, word)?;
+                None
+            }
+            (3, _) => Some(core.open_tool_life(block)?),
+            (50, DataSetting::WithOldCode | DataSetting::WithEitherCode) => Some(DataList::Parameters),
+            (52, DataSetting::WithEitherCode) => Some(DataList::ParametersAndBits),
+            (52, DataSetting::ListsOnly) => Some(DataList::ParametersAndVariables),
+            _ => return Err(core.alarm("data-setting-format", word)),
+        },
+    };
+    if let Some(list) = list {
+        core.refuse_other_words(block, b"GNLP")?;
+        core.data_list = Some(list);
     }
     core.say_that_data_changes();
     Ok(())
@@ -65,6 +94,7 @@ impl Core {
     fn set_offset(&mut self, block: &Block, code: Option<&Word>) -> Result<(), Alarm> {
         let Some(target) = block.word(b'P') else { return Err(self.alarm_at("data-setting-format", code)) };
         let (table, number) = match self.whole(target, 99_999)? {
+            0 => return self.write_work_zero(block, WorkZero::WorkpieceShift, target),
             number @ GEOMETRY.. => (OffsetTable::Geometry, number - GEOMETRY),
             number => (OffsetTable::Wear, number),
         };
@@ -98,5 +128,62 @@ impl Core {
         }
         self.after_offset_change(number);
         Ok(())
+    }
+
+    /// `G10 L2 P_` and `G10 L20 P_`: a stored zero.
+    fn set_work_zeros(&mut self, block: &Block, list: &Word) -> Result<(), Alarm> {
+        let Some(target) = block.word(b'P') else { return Err(self.alarm("data-setting-format", list)) };
+        let number = self.whole(target, 99_999)? as usize;
+        let zero = match (self.whole(list, 99)?, number) {
+            (2, 0) => WorkZero::External,
+            (2, 1..=STANDARD_SYSTEMS) => WorkZero::System(number - 1),
+            (20, 1..) => WorkZero::additional(number),
+            _ => return Err(self.alarm("data-setting-format", target)),
+        };
+        self.write_work_zero(block, zero, target)
+    }
+
+    /// Writes the axes that the block names into a stored zero.
+    fn write_work_zero(&mut self, block: &Block, zero: WorkZero, target: &Word) -> Result<(), Alarm> {
+        self.refuse_other_words(block, b"GNLPXZUWTSMF")?;
+        let mut values: [Option<Length>; 2] = [None; 2];
+        for (axis, absolute, increment) in [(Axis::X, b'X', b'U'), (Axis::Z, b'Z', b'W')] {
+            if !block.has(absolute) && !block.has(increment) {
+                continue;
+            }
+            let (word, is_increment) = self.axis_word(block, absolute, increment)?;
+            self.missing_point(word);
+            let value = match axis {
+                Axis::X => self.radius(word, Role::XCoordinate)?.to_diameter().0,
+                Axis::Z => self.length(word)?,
+            };
+            let Some(before) = self.work_zero(zero, axis) else {
+                return Err(self.alarm("data-setting-format", target));
+            };
+            let value = if is_increment { before + value } else { value };
+            if value.abs().nm() >= self.settings.length_limit_nm {
+                return Err(self.alarm("data-out-of-range", word));
+            }
+            values[axis as usize] = Some(value);
+        }
+        if values == [None; 2] {
+            return Err(self.alarm("data-setting-format", target));
+        }
+        self.with_new_zero(|core| {
+            for axis in Axis::ALL {
+                if let Some(value) = values[axis as usize] {
+                    core.zeros.set(zero, axis, value);
+                }
+            }
+        });
+        Ok(())
+    }
+
+    /// Refuses every word whose letter is not listed.
+    pub(crate) fn refuse_other_words(&self, block: &Block, letters: &[u8]) -> Result<(), Alarm> {
+        match block.words.iter().find(|word| word.comma || !letters.contains(&word.address)) {
+            Some(word) => Err(self.alarm("data-setting-words-illegal", word)),
+            None => Ok(()),
+        }
     }
 }
