@@ -116,6 +116,23 @@ policies! {
         /// `L` for the chamfer, `D` for the fillet.
         LengthAndFillet,
     }
+    /// Corner words behind a comma while plain corner letters are on.
+    comma_corner_words: CommaCornerWords {
+        /// Taken all the same.
+        Accepted,
+        /// Refused.
+        RefusedWithPlainLetters,
+    }
+    /// Lines by their angle, and corners between slanting lines.
+    drawing_dimensions: DrawingDimensions {
+        /// Every control of the series has them. Plain corner letters, where they are on, serve them too: between
+        /// lines that are not at a right angle along the axes, or in a block with an angle, a size without a sign
+        /// is a drawing dimension; at a right angle its sign is checked.
+        Standard,
+        /// An option. Words behind a comma and angles run, with a warning that the option is needed; plain C and R
+        /// only make right-angled corners.
+        Option,
+    }
     /// Motion codes that the first block of a figure may have.
     first_figure_code: FirstFigureCode {
         /// Positioning or a straight cut.
@@ -292,6 +309,10 @@ pub struct Limits {
     pub call_depth_max: u8,
     /// Blocks without a move that may stand between a corner and the line it leads to.
     pub corner_gap_max: u8,
+    /// The same between the lines of a drawing dimension.
+    pub drawing_gap_max: u8,
+    /// Largest size of a corner between any cuts; larger ones are passed over.
+    pub corner_size_max_mm: u16,
     /// Most blocks in the figure of a cycle.
     pub figure_blocks_max: u32,
 }

@@ -6,8 +6,12 @@
 //! The plane is seen with Z to the right and X up; angles are counter-clockwise from +Z.
 
 mod arc;
+mod corner;
+mod line;
 
 pub use arc::{ArcFault, centre_from_radius, sweep_rad};
+pub use corner::{Bend, Breaking, Corner, CornerFault, Segment, break_corner};
+pub use line::Line;
 
 /// A place in the half-section.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

@@ -251,8 +251,8 @@ impl Core {
         match codes.one_shot {
             Some(Code { id, code, word }) => {
                 let word = &block.words[usize::from(word)];
-                if waiting_corner && block.present() & AXES != 0 && !function.in_figure {
-                    return Err(self.corner_without_next());
+                if waiting_corner && !function.in_figure {
+                    return Err(self.corner_interrupted());
                 }
                 id.get().run(self, &mut call(Some(word), code, environment))?;
                 self.modal.in_force.code(id, code, &self.dispatch);
@@ -261,11 +261,11 @@ impl Core {
                 }
             }
             None => {
-                let triggered = block.present() & function.trigger != 0
+                let triggered = self.is_triggered(block, function, &auxiliary)
                     || (function.repeats && self.repeats_single_cycle(block, &auxiliary));
                 if triggered {
-                    if waiting_corner && motion != FunctionId::LINEAR {
-                        return Err(self.corner_without_next());
+                    if waiting_corner && !function.in_figure {
+                        return Err(self.corner_interrupted());
                     }
                     let word = codes.motion.map(|motion| &block.words[usize::from(motion.word)]);
                     function.run(self, &mut call(word, self.modal.motion_code, environment))?;
@@ -275,11 +275,18 @@ impl Core {
         if self.untaken.is_some() && block.present() & Block::bit(b'T') != 0 {
             self.end_of_tool_block(block.word(b'T'))?;
         }
-        let line = self.at.line;
-        if waiting_corner && self.corner.as_mut().is_some_and(|corner| corner.waits_too_long(line)) {
-            return Err(self.corner_without_next());
+        if self.corner.is_some() {
+            self.check_open_path()?;
         }
         if auxiliary.acts_behind() { self.behind_move(auxiliary, depth, block, environment) } else { Ok(()) }
+    }
+
+    /// Whether the words of a block make a motion in force run.
+    #[inline]
+    fn is_triggered(&self, block: &Block, function: &Function, auxiliary: &Auxiliary) -> bool {
+        let letters = block.present() & function.trigger;
+        (letters != 0 && letters & !auxiliary.letters() != 0)
+            || (block.has_comma && function.draws_lines && self.gives_angle(block))
     }
 
     #[inline]
@@ -386,7 +393,8 @@ impl Core {
     ) -> Result<(), Alarm> {
         let allowed = ALWAYS | AXES | function.letters | auxiliary.letters();
         let mut foreign = block.present() & !allowed;
-        let is_idle = matches!(function.kind, Kind::Motion(_)) && block.present() & function.trigger == 0;
+        let is_idle =
+            matches!(function.kind, Kind::Motion(_)) && !self.is_triggered(block, function, auxiliary);
         if is_idle {
             // A motion that does not run takes no letters: `R5.` alone shapes nothing.
             foreign |= block.present() & function.letters & !auxiliary.letters();
@@ -403,10 +411,7 @@ impl Core {
     /// A word behind a comma belongs to a straight cut with an end point.
     #[cold]
     fn comma_without_line(&self, block: &Block) -> Alarm {
-        match block.words.iter().find(|word| word.comma) {
-            Some(word) if word.address == b'A' => self.not_supported("drawing-dimensions", word),
-            word => self.alarm_at("illegal-address", word),
-        }
+        self.alarm_at("illegal-address", block.words.iter().find(|word| word.comma))
     }
 
     #[cold]

@@ -246,7 +246,7 @@ impl Core {
             return Ok(());
         }
         if self.corner.is_some() {
-            return Err(self.alarm_block("figure-ends-in-corner"));
+            return Err(self.corner_without_next());
         }
         self.in_cycle = Some(CycleOrigin { label: CycleLabel(code), pass: 1, phase: Phase::Home });
         // Each axis goes back at its own rate, whatever the parameter for rapid moves says.

@@ -29,6 +29,7 @@ mod modal;
 mod moves;
 mod offsets;
 mod parts;
+mod plane;
 mod report;
 mod reset;
 mod spindle;

@@ -11,8 +11,8 @@ use turnwright_units::{Displacement, Length, Position, Radius, SurfaceSpeed, Wor
 
 use crate::Environment;
 use crate::auxiliary::Waiting;
-use crate::corner::PendingCorner;
 use crate::data_list::{DataList, ToolLife};
+use crate::corner::OpenPath;
 use crate::figure::FigureRange;
 use crate::flow::{Frame, ProgramIndex};
 use crate::functions::{Dispatch, FunctionId};
@@ -111,7 +111,8 @@ pub(crate) struct Core {
     pub(crate) waiting: Option<Waiting>,
     pub(crate) in_cycle: Option<CycleOrigin>,
     pub(crate) capture: Option<Capture>,
-    pub(crate) corner: Option<PendingCorner>,
+    /// Elements that wait for a later block.
+    pub(crate) corner: Option<OpenPath>,
     /// First and last sequence numbers of figures that were roughed.
     pub(crate) roughed: Vec<(u32, u32)>,
     /// Lines of figures that were finished before anything roughed them.

@@ -114,7 +114,10 @@ impl Core {
     pub(crate) fn emit(&mut self, action: Action) {
         if !self.is_capturing() {
             let origin = self.origin();
-            self.out.push_back(Command { action, origin });
+            match &mut self.corner {
+                None => self.out.push_back(Command { action, origin }),
+                Some(path) => path.hold(Command { action, origin }),
+            }
         }
     }
 

@@ -1,6 +1,6 @@
 //! Diagnostics with a place: alarms that stop, warnings that do not.
 
-use turnwright_diagnostics::{Call, Diagnostic, Place};
+use turnwright_diagnostics::{Argument, Call, Diagnostic, Place};
 use turnwright_syntax::Word;
 
 use crate::limits::WARNINGS_MAX;
@@ -56,6 +56,14 @@ impl Core {
     /// An alarm at a word when there is one, else at the block.
     pub(crate) fn alarm_at(&self, key: &'static str, word: Option<&Word>) -> Alarm {
         word.map_or_else(|| self.alarm_block(key), |word| self.alarm(key, word))
+    }
+
+    /// Something that a later version does, by its key in the table of functions: named, never passed over.
+    pub(crate) fn not_supported(&self, function: &str, word: &Word) -> Alarm {
+        let quote = self.quote(word.start, word.end);
+        let diagnostic = Diagnostic::error("not-supported-yet").at(self.place(word));
+        let diagnostic = diagnostic.with("code", quote.clone()).with("word", quote);
+        self.finish(diagnostic.with("name", Argument::Function(function.into())))
     }
 
     /// Adds the calls that led here.

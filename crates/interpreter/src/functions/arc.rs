@@ -13,49 +13,48 @@
 //! Source: circular interpolation of both families.
 
 use turnwright_canon::{Action, Shape, Turn};
-use turnwright_control::policy::{ArcEndError, NegativeArcRadius};
+use turnwright_control::policy::{ArcEndError, CornerWords, NegativeArcRadius};
 use turnwright_diagnostics::Diagnostic;
 use turnwright_geometry::{ArcFault, Point, centre_from_radius};
+use turnwright_syntax::{Block, Word};
 use turnwright_units::{Feed, LeastIncrement, Length, Position, Radius, WorkTip};
 
 use super::Function;
 use crate::block::Call;
+use crate::corner::Motion;
 use crate::machine::Core;
+use crate::plane::{place, point};
 use crate::report::Alarm;
 use crate::words::Role;
 
 pub(super) static ARC_CLOCKWISE: Function =
     Function::motion("arc-clockwise", |core, call| arc(core, call, Turn::Clockwise))
-        .with_letters(b"RIK")
+        .with_letters(b"RIKLD")
         .triggered_by(b"RIK")
         .allowed_in_figure();
 
 pub(super) static ARC_COUNTER_CLOCKWISE: Function =
     Function::motion("arc-counter-clockwise", |core, call| arc(core, call, Turn::CounterClockwise))
-        .with_letters(b"RIK")
+        .with_letters(b"RIKLD")
         .triggered_by(b"RIK")
         .allowed_in_figure();
 
+/// Letters of corners where they may lie between any cuts.
+const CORNERS: u32 = super::letters(b"LD");
+
 /// An arc to be cut.
-struct Arc {
+struct Arc<'b> {
+    block: &'b Block,
     from: Position<WorkTip>,
     to: Position<WorkTip>,
     turn: Turn,
     feed: Feed,
 }
 
-fn point(position: Position<WorkTip>) -> Point {
-    Point::new(position.x.to_mm(), position.z.to_mm())
-}
-
-/// A computed place, to the nanometre: centres are not commanded and so not rounded to the increment.
-fn place(point: Point) -> Option<Position<WorkTip>> {
-    let nm = |mm: f64| (mm.abs() < 1e9).then(|| Length::from_nm((mm * 1e6).round() as i64));
-    Some(Position::new(Radius(nm(point.x)?), nm(point.z)?))
-}
-
 fn arc(core: &mut Core, call: &mut Call<'_>, turn: Turn) -> Result<(), Alarm> {
-    core.refuse_comma_words(call.block)?;
+    if core.corner.is_some() || call.block.has_comma || call.block.present() & CORNERS != 0 {
+        core.check_path_words(call.block)?;
+    }
     if core.untaken.is_some() {
         // The way of the offset is no part of the arc.
         core.warn_block("offset-moves-in-arc");
@@ -67,7 +66,7 @@ fn arc(core: &mut Core, call: &mut Call<'_>, turn: Turn) -> Result<(), Alarm> {
         return Err(core.alarm_at("feed-missing", call.word));
     };
     core.check_spindle();
-    let arc = Arc { from, to, turn, feed };
+    let arc = Arc { block: call.block, from, to, turn, feed };
     if let Some(word) = call.block.word(b'R') {
         return core.arc_by_radius(&arc, word);
     }
@@ -78,18 +77,43 @@ fn arc(core: &mut Core, call: &mut Call<'_>, turn: Turn) -> Result<(), Alarm> {
         return Err(core.alarm_at("arc-without-radius", call.word));
     }
     core.warn_block("arc-as-line");
+    if core.joins_arcs(call.block) {
+        return core.line_in_path(call.block, Motion::Feed(feed));
+    }
     core.modal.position = to;
     core.emit_move(to, Action::Feed { to, shape: Shape::Line, feed, others: None })
 }
 
 impl Core {
-    fn cut_arc(&mut self, arc: &Arc, centre: Position<WorkTip>) -> Result<(), Alarm> {
+    /// Words of corners and drawing dimensions in an arc, and an arc behind such words.
+    #[cold]
+    fn check_path_words(&mut self, block: &Block) -> Result<(), Alarm> {
+        if self.corner.is_some() {
+            self.check_arc_in_path()?;
+        }
+        let is_strange = |word: &&Word| match self.control.policies.corner_words {
+            CornerWords::LengthAndFillet => word.comma,
+            CornerWords::ChamferAndRadius => word.comma || matches!(word.address, b'L' | b'D'),
+        };
+        match block.words.iter().find(is_strange) {
+            Some(word) if word.comma && matches!(word.address, b'A' | b'C' | b'R') => {
+                Err(self.alarm("drawing-sequence-illegal", word))
+            }
+            Some(word) => Err(self.alarm("illegal-address", word)),
+            None => Ok(()),
+        }
+    }
+
+    fn cut_arc(&mut self, arc: &Arc<'_>, centre: Position<WorkTip>) -> Result<(), Alarm> {
+        if self.joins_arcs(arc.block) {
+            return self.arc_in_path(arc.block, (arc.from, arc.to), (arc.turn, centre), arc.feed);
+        }
         self.modal.position = arc.to;
         let shape = Shape::Arc { turn: arc.turn, centre };
         self.emit_move(arc.to, Action::Feed { to: arc.to, shape, feed: arc.feed, others: None })
     }
 
-    fn arc_by_radius(&mut self, arc: &Arc, word: &turnwright_syntax::Word) -> Result<(), Alarm> {
+    fn arc_by_radius(&mut self, arc: &Arc<'_>, word: &Word) -> Result<(), Alarm> {
         let radius = self.radius(word, Role::ArcOffset)?;
         self.missing_point(word);
         if radius.0.signum() < 0 && self.control.policies.negative_arc_radius == NegativeArcRadius::Alarm {
@@ -114,7 +138,7 @@ impl Core {
         }
     }
 
-    fn arc_alarm(&self, word: &turnwright_syntax::Word, error_mm: f64) -> Alarm {
+    fn arc_alarm(&self, word: &Word, error_mm: f64) -> Alarm {
         let shown = |mm: f64| Length::from_mm_rounded(mm, LeastIncrement::METRIC_C).unwrap_or(Length::ZERO);
         let quote = self.quote(word.start, word.end);
         let diagnostic = Diagnostic::alarm("arc-radius-tolerance").at(self.place(word)).with("word", quote);
@@ -122,7 +146,7 @@ impl Core {
         self.finish(diagnostic.with("limit", shown(self.settings.arc_tolerance_mm)))
     }
 
-    fn arc_by_centre(&mut self, arc: &Arc, call: &Call<'_>) -> Result<(), Alarm> {
+    fn arc_by_centre(&mut self, arc: &Arc<'_>, call: &Call<'_>) -> Result<(), Alarm> {
         let x = self.optional_radius(call.block, b'I', Role::ArcOffset)?.unwrap_or(Radius::ZERO);
         let z = call.block.word(b'K').map(|word| self.length(word)).transpose()?.unwrap_or(Length::ZERO);
         let word = call.block.word(b'I').or(call.block.word(b'K'));
@@ -167,7 +191,7 @@ impl Core {
     /// An arc with the radius of its start to the ray of the end point, then straight to the end point.
     fn arc_and_tail(
         &mut self,
-        arc: &Arc,
+        arc: &Arc<'_>,
         centre: Position<WorkTip>,
         radius_mm: f64,
         end_mm: f64,

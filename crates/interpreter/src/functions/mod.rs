@@ -66,6 +66,8 @@ pub(crate) struct Function {
     pub(crate) keeps_single_cycle: bool,
     /// One of the multiple repetitive cycles: a foreign letter has an alarm of its own.
     pub(crate) is_multiple_cycle: bool,
+    /// Its lines may be given by their angle.
+    pub(crate) draws_lines: bool,
 }
 
 /// The bits of some letters.
@@ -95,6 +97,7 @@ impl Function {
             repeats: false,
             keeps_single_cycle: false,
             is_multiple_cycle: false,
+            draws_lines: false,
         }
     }
 
@@ -153,6 +156,12 @@ impl Function {
     pub(crate) const fn keeping_single_cycle(mut self) -> Self {
         self.keeps_single_cycle = true;
         self
+    }
+
+    /// A line whose angle alone makes it run.
+    pub(crate) const fn drawing_lines(mut self) -> Self {
+        self.draws_lines = true;
+        self.with_letters(crate::corner::LETTERS).triggered_by(b"AQ")
     }
 
     pub(crate) const fn multiple_cycle(mut self) -> Self {

@@ -3,34 +3,27 @@
 //! `G00 X(U)_ Z(W)_` moves to the end point, each axis at its own rate (dog-leg), or in a straight line when the
 //! parameter for linear positioning is set. F has no effect on it.
 //!
+//! Rapids may take part in drawing dimensions (an angle, a chamfer); see `corner`.
+//!
 //! Source: positioning of both families.
 
 use turnwright_canon::Action;
 
 use super::Function;
+use super::linear::PATH_LETTERS;
 use crate::block::Call;
+use crate::corner::Motion;
 use crate::machine::Core;
 use crate::report::Alarm;
 
-pub(super) static RAPID: Function = Function::motion("rapid", rapid).allowed_in_figure();
+pub(super) static RAPID: Function = Function::motion("rapid", rapid).drawing_lines().allowed_in_figure();
 
 fn rapid(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
-    core.refuse_comma_words(call.block)?;
+    let path = core.rapid_path();
+    if core.corner.is_some() || call.block.present() & PATH_LETTERS != 0 || call.block.has_comma {
+        return core.line_in_path(call.block, Motion::Rapid(path));
+    }
     let to = core.target(call.block)?;
     core.modal.position = to;
-    let path = core.rapid_path();
     core.emit_move(to, Action::Rapid { to, path, others: None })
-}
-
-impl Core {
-    /// Words behind a comma belong to the straight cut only.
-    pub(super) fn refuse_comma_words(&self, block: &turnwright_syntax::Block) -> Result<(), Alarm> {
-        if !block.has_comma {
-            return Ok(());
-        }
-        match block.words.iter().find(|word| word.comma) {
-            Some(word) => Err(self.alarm("illegal-address", word)),
-            None => Ok(()),
-        }
-    }
 }
