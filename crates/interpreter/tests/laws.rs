@@ -37,8 +37,8 @@ const CODES: [&str; 34] = [
     "M30", "M1", "G18", "G99",
 ];
 
-const WORDS: [&str; 17] =
-    ["X", "Z", "U", "W", "R", "F", "S", "T", "P", "Q", "I", "K", "N", "C", ",R", "L", "D"];
+const WORDS: [&str; 20] =
+    ["X", "Z", "U", "W", "R", "F", "S", "T", "P", "Q", "I", "K", "N", "C", ",R", "L", "D", ",A", ",C", "A"];
 
 const NUMBERS: [&str; 24] = [
     "0",

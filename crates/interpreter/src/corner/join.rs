@@ -52,6 +52,8 @@ impl Element {
     fn segment(&self) -> Option<Segment> {
         let bend = match self.shape {
             Shape::Line => None,
+            // Paths lie in the turning plane.
+            Shape::SideArc { .. } => return None,
             Shape::Arc { turn, centre } => {
                 Some(Bend { centre: point(centre), clockwise: turn == Turn::Clockwise })
             }

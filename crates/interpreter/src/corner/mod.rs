@@ -43,8 +43,8 @@ pub(crate) enum Motion {
 impl Motion {
     fn action(self, to: Position<WorkTip>, shape: Shape) -> Action {
         match self {
-            Self::Rapid(path) => Action::Rapid { to, path },
-            Self::Feed(feed) => Action::Feed { to, shape, feed },
+            Self::Rapid(path) => Action::Rapid { to, path, others: None },
+            Self::Feed(feed) => Action::Feed { to, shape, feed, others: None },
         }
     }
 }
