@@ -82,14 +82,14 @@ pub(crate) struct OpenPath {
     gap: u8,
     /// The block in work added an element.
     is_new: bool,
-    moves_zero: bool,
+    /// Where the program stands; if this changes without an element, the zero has moved.
+    stands: Option<Position<WorkTip>>,
 }
 
 impl OpenPath {
     /// Keeps a command until the moves before it are given out.
     #[cold]
     pub(crate) fn hold(&mut self, command: Command) {
-        self.moves_zero |= matches!(command.action, Action::Relocate { .. });
         if let Some(last) = self.elements.last_mut() {
             last.held.push(command);
         }
@@ -288,6 +288,14 @@ impl Core {
     /// Takes an element in, and gives out what is settled by it.
     fn add_element(&mut self, mut element: Element) -> Result<(), Alarm> {
         let mut path = self.corner.take().unwrap_or_default();
+        if path.stands.is_some_and(|stands| stands != self.modal.position) {
+            self.corner = Some(path);
+            return Err(self.zero_moved());
+        }
+        if !self.is_capturing() {
+            // The first element of a path takes the movement of the offset along.
+            self.untaken = None;
+        }
         if let Some(last) = path.elements.last_mut() {
             if !last.may_be_followed_by(&element) {
                 self.corner = Some(path);
@@ -307,7 +315,7 @@ impl Core {
             self.modal.position = reached;
         }
         if !path.elements.is_empty() {
-            (path.gap, path.is_new) = (0, true);
+            (path.gap, path.is_new, path.stands) = (0, true, Some(self.modal.position));
             self.corner = Some(path);
         }
         Ok(())
@@ -386,23 +394,32 @@ impl Core {
     #[cold]
     pub(crate) fn check_open_path(&mut self) -> Result<(), Alarm> {
         let limits = self.control.limits;
+        let stands = Some(self.modal.position);
         let Some(path) = &mut self.corner else { return Ok(()) };
         if std::mem::take(&mut path.is_new) {
             return Ok(());
         }
         path.gap += 1;
-        let (gap, moves_zero) = (path.gap, path.moves_zero);
+        let (gap, moves_zero) = (path.gap, path.stands != stands);
         let Some(last) = path.last() else { return Ok(()) };
-        let (place, quote) = last.words();
         if moves_zero {
-            let diagnostic = Diagnostic::error("zero-moved-in-corner").at(self.block_place());
-            return Err(self.finish(diagnostic.with("word", quote).near(place, "next-block")));
+            return Err(self.zero_moved());
         }
         let gap_max = match last.rule() {
             Rule::AnyLines => limits.drawing_gap_max,
             Rule::RightAngle | Rule::PlainLetter | Rule::AnyCuts => limits.corner_gap_max,
         };
         if gap <= gap_max { Ok(()) } else { Err(self.left_open(Interruption::TooManyBlocks)) }
+    }
+
+    /// An offset or coordinate system changed while the path is open.
+    fn zero_moved(&self) -> Alarm {
+        let diagnostic = Diagnostic::error("zero-moved-in-corner").at(self.block_place());
+        let Some(last) = self.corner.as_ref().and_then(|path| path.last()) else {
+            return self.finish(diagnostic.with("word", ""));
+        };
+        let (place, quote) = last.words();
+        self.finish(diagnostic.with("word", quote).near(place, "next-block"))
     }
 
     /// The block in work may not follow the open path.
