@@ -69,7 +69,9 @@ pub enum Action {
     Interpolation(Interpolation),
     /// Another rotation is coupled to the spindle in a fixed ratio, or, with `None`, uncoupled.
     Coupling(Option<SpeedRatio>),
-    /// Standing still.
+    /// How moves meet from here on.
+    PathMode(PathMode),
+    /// Standing still; the tool comes to rest also when the time is zero.
     Dwell(Dwell),
     /// New state of the spindle.
     Spindle {
@@ -144,6 +146,18 @@ pub enum Turn {
     Clockwise,
     /// Counter-clockwise.
     CounterClockwise,
+}
+
+/// How one cutting move meets the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum PathMode {
+    /// The next move may begin before the tool has come to rest: corners are rounded a little.
+    #[default]
+    Continuous,
+    /// Each move comes to rest in position before the next begins. Moves of cycles keep their own rule.
+    ExactStop,
+    /// As continuous, with overrides and feed hold out of action.
+    Tapping,
 }
 
 /// A pause.

@@ -9,8 +9,8 @@
 use turnwright_units::{Feed, Position, WorkTip, write_degrees, write_fixed, write_millimetres};
 
 use crate::{
-    Action, Command, Coolant, Dwell, Interpolation, OtherAxes, Shape, SidePlane, SpindleSpeed, SpindleState,
-    Turn,
+    Action, Command, Coolant, Dwell, Interpolation, OtherAxes, PathMode, Shape, SidePlane, SpindleSpeed,
+    SpindleState, Turn,
 };
 
 /// Writes one command, without a line end, its lengths rounded to `decimals` places.
@@ -99,6 +99,11 @@ pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
             out.extend_from_slice(format!("coupling {}:{}", ratio.spindle, ratio.other).as_bytes());
         }
         Action::Coupling(None) => out.extend_from_slice(b"coupling off"),
+        Action::PathMode(mode) => out.extend_from_slice(match mode {
+            PathMode::Continuous => b"path continuous",
+            PathMode::ExactStop => b"path exact-stop",
+            PathMode::Tapping => b"path tapping",
+        }),
         Action::Dwell(Dwell::Time(seconds)) => {
             out.extend_from_slice(format!("dwell {}s", seconds.0).as_bytes());
         }

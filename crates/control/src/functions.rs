@@ -152,3 +152,57 @@ pub fn parse_code(text: &str) -> Option<u16> {
     let tenth: u16 = tenth.parse().ok()?;
     (whole < 1000 && tenth < 10).then_some(whole * 10 + tenth)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Codes of a group in systems A, B and C, `-` where a system has none.
+    const GROUPS: [(u8, &str); 17] = [
+        (1, "00,00,00 01,01,01 02,02,02 03,03,03 32,33,33 34,34,34 90,77,20 92,78,21 94,79,24"),
+        (2, "96,96,96 97,97,97"),
+        (3, "-,90,90 -,91,91"),
+        (4, "68,68,68 69,69,69"),
+        (5, "98,94,94 99,95,95"),
+        (6, "20,20,70 21,21,71"),
+        (7, "40,40,40 41,41,41 42,42,42"),
+        (8, "25,25,25 26,26,26"),
+        (9, "22,22,22 23,23,23"),
+        (10, "80,80,80 83,83,83 84,84,84 85,85,85 87,87,87 88,88,88 89,89,89"),
+        (11, "-,98,98 -,99,99"),
+        (12, "66,66,66 67,67,67"),
+        (14, "54,54,54 55,55,55 56,56,56 57,57,57 58,58,58 59,59,59"),
+        (15, "61,61,61 63,63,63 64,64,64"),
+        (16, "17,17,17 18,18,18 19,19,19"),
+        (20, "50.2,50.2,50.2 51.2,51.2,51.2"),
+        (21, "12.1,12.1,12.1 13.1,13.1,13.1"),
+    ];
+
+    const ONE_SHOT: &str = "04,04,04 09,09,09 10,10,10 11,11,11 27,27,27 28,28,28 30,30,30 31,31,31 50,92,92 \
+                            50.3,92.1,92.1 52,52,52 53,53,53 65,65,65 70,70,72 71,71,73 72,72,74 73,73,75 \
+                            74,74,76 75,75,77 76,76,78";
+
+    #[test]
+    fn every_code_of_the_three_systems_is_in_its_group() {
+        let functions = Functions::load();
+        let mut count = 0;
+        for (group, rows) in GROUPS.iter().copied().chain([(0, ONE_SHOT)]) {
+            for row in rows.split_whitespace() {
+                let systems = [CodeSystem::A, CodeSystem::B, CodeSystem::C];
+                let mut names = Vec::new();
+                for (system, text) in systems.into_iter().zip(row.split(',')).filter(|(_, text)| *text != "-")
+                {
+                    let code = parse_code(text).expect("a code");
+                    let found = functions.by_code(code, system, "fanuc-0i-tf");
+                    let (name, entry) = found.unwrap_or_else(|| panic!("G{text} in {system:?}"));
+                    assert_eq!(entry.group(), Group(group), "{name}");
+                    names.push(name);
+                    count += 1;
+                }
+                names.dedup();
+                assert_eq!(names.len(), 1, "{row} is one function: {names:?}");
+            }
+        }
+        assert!(count > 180, "{count}");
+    }
+}

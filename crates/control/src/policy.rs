@@ -35,6 +35,83 @@ policies! {
         /// Rounded to the nearest increment.
         Round,
     }
+    /// A length without a decimal point where the point decides what it counts.
+    missing_point: MissingPoint {
+        /// It counts by the decimal rule.
+        Counts,
+        /// Refused, unless it is zero.
+        Alarm,
+    }
+    /// A whole number with a point.
+    integer_words: IntegerWords {
+        /// The point is refused.
+        PointRefused,
+        /// Refused only when something other than zero stands behind the point.
+        FractionRefused,
+    }
+    /// A feed below zero.
+    negative_feed: NegativeFeed {
+        /// Refused.
+        Alarm,
+        /// Taken without its sign.
+        Absolute,
+    }
+    /// A dwell below zero.
+    negative_dwell: NegativeDwell {
+        /// Refused.
+        Alarm,
+        /// No dwell.
+        Zero,
+    }
+    /// A dwell in spindle revolutions while the spindle stands.
+    turn_dwell_without_spindle: TurnDwellWithoutSpindle {
+        /// Refused.
+        Alarm,
+        /// The control waits until it turns; a warning says so.
+        Warn,
+    }
+    /// Program number zero.
+    program_zero: ProgramZero {
+        /// Refused.
+        Alarm,
+        /// A number like any other.
+        Allowed,
+    }
+    /// A program that begins without O.
+    unnumbered_program: UnnumberedProgram {
+        /// The sequence number of its first block is its number.
+        TakesFirstSequence,
+        /// It has none.
+        Nameless,
+    }
+    /// A block skip mark behind words.
+    skip_inside_block: SkipInsideBlock {
+        /// The rest of the block is left out while the switch is on.
+        SkipsRest,
+        /// Refused: marks stand at the head of a block only.
+        Alarm,
+    }
+    /// A bracket that opens inside a comment.
+    nested_comment: NestedComment {
+        /// Part of the comment; a warning says so.
+        Warn,
+        /// Refused.
+        Alarm,
+    }
+    /// The same address twice in a block.
+    repeated_address: RepeatedAddress {
+        /// The last counts, or an alarm, as the parameter says.
+        ByParameter,
+        /// Refused.
+        Alarm,
+    }
+    /// A code that acts once and a motion code in one block.
+    one_shot_with_motion: OneShotWithMotion {
+        /// The axis words belong to the one that acts once, the motion code is in force afterwards.
+        Allowed,
+        /// Refused.
+        Alarm,
+    }
     /// The absolute and the incremental word of one axis in one block.
     axis_word_conflict: AxisWordConflict {
         /// The one that stands later counts.
@@ -295,10 +372,8 @@ pub struct Limits {
     pub sequence_digits: u8,
     /// Digits of a program number.
     pub program_digits: u8,
-    /// Digits of a spindle speed.
-    pub spindle_digits: u8,
-    /// Digits of a tool word that are read as station and offset.
-    pub tool_digits: u8,
+    /// Inputs that can end a dwell; 0 when the control lacks the function.
+    pub dwell_inputs: u8,
     /// Highest offset number.
     pub offset_number_max: u32,
     /// Additional work coordinate systems.

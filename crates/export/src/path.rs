@@ -191,7 +191,8 @@ impl PathRecorder {
             Action::Relocate { to, .. } => self.at = *to,
             Action::Tool { tool, .. } => self.tool = *tool,
             Action::Dwell(Dwell::Time(_) | Dwell::Turns(_)) => self.dwell_s += seconds,
-            Action::Interpolation(_)
+            Action::PathMode(_)
+            | Action::Interpolation(_)
             | Action::Coupling(_)
             | Action::Spindle { .. }
             | Action::Coolant(_)

@@ -193,6 +193,9 @@ impl Core {
             self.waiting = Some(Waiting { auxiliary, at: self.at, depth });
             return Ok(());
         }
+        if self.stops_once {
+            self.end_exact_stop();
+        }
         if auxiliary.acts_behind {
             if auxiliary.spindle == Some(SpindleState::Stop) && !self.is_capturing() {
                 self.modal.spindle = SpindleState::Stop;

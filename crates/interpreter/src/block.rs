@@ -4,8 +4,11 @@
 //! the auxiliary functions that wait for the end of the move. Source: execution order inside a block, both
 //! families.
 
+use turnwright_control::policy::{
+    NestedComment, OneShotWithMotion, ProgramZero, RepeatedAddress, SkipInsideBlock, UnnumberedProgram,
+};
 use turnwright_diagnostics::{Diagnostic, Severity};
-use turnwright_syntax::{Block, Fault, FaultKind, Word, scan_block};
+use turnwright_syntax::{Block, ExtentKind, Fault, FaultKind, Word, scan_block};
 
 use crate::Environment;
 use crate::auxiliary::Auxiliary;
@@ -131,7 +134,7 @@ impl Core {
             return Ok(if self.has_started || block.is_end_of_text { Read::End } else { Read::Blank });
         }
         if block.skip.whole | block.skip.rest != 0 {
-            self.apply_skips(block, environment);
+            self.apply_skips(block, environment)?;
         }
         if !block.faults.is_empty() {
             self.report_faults(block)?;
@@ -143,7 +146,10 @@ impl Core {
     }
 
     #[cold]
-    fn apply_skips(&self, block: &mut Block, environment: &mut dyn Environment) {
+    fn apply_skips(&self, block: &mut Block, environment: &mut dyn Environment) -> Result<(), Alarm> {
+        if block.skip.rest != 0 && self.control.policies.skip_inside_block == SkipInsideBlock::Alarm {
+            return Err(self.skip_inside_block(block));
+        }
         let is_on =
             |marks: u16| (1..=9u8).any(|switch| marks & (1 << switch) != 0 && environment.skips(switch));
         if is_on(block.skip.whole) {
@@ -154,12 +160,23 @@ impl Core {
             block.faults.retain(|fault| fault.start < from);
             block.truncate(kept);
         }
+        Ok(())
+    }
+
+    /// The mark of a block skip behind words, where the control knows it only at the head.
+    fn skip_inside_block(&self, block: &Block) -> Alarm {
+        let head = block.words.iter().find(|word| word.address != b'N').map_or(0, |word| word.start);
+        let mark = block.extents.iter().find(|extent| extent.kind == ExtentKind::Skip && extent.start > head);
+        let (start, end) =
+            mark.map_or((self.at.first_byte, self.at.last_byte), |mark| (mark.start, mark.end));
+        let diagnostic = Diagnostic::alarm("not-a-word").at(self.at.span(start, end));
+        self.finish(diagnostic.with("word", self.quote(start, end)))
     }
 
     #[cold]
     fn report_faults(&mut self, block: &Block) -> Result<(), Alarm> {
         for fault in &block.faults {
-            let (key, severity) = fault_key(fault.kind);
+            let (key, severity) = self.fault_key(fault);
             if severity == Severity::Alarm {
                 return Err(self.fault_alarm(key, fault));
             }
@@ -172,6 +189,35 @@ impl Core {
             }
         }
         Ok(())
+    }
+
+    /// The diagnostic of a fault that the reader found.
+    fn fault_key(&self, fault: &Fault) -> (&'static str, Severity) {
+        use Severity::{Alarm, Warning};
+        match fault.kind {
+            FaultKind::NumberTooLong => ("number-too-long", Alarm),
+            FaultKind::TwoPoints => ("two-points", Alarm),
+            FaultKind::TwoSigns => ("two-signs", Alarm),
+            FaultKind::AddressWithoutValue => {
+                let letter = self.text.bytes(&self.line).get(fault.start as usize);
+                match letter.map(u8::to_ascii_uppercase) {
+                    Some(b'N' | b'O') => ("number-missing-after-o-or-n", Alarm),
+                    _ => ("address-without-value", Alarm),
+                }
+            }
+            FaultKind::NotAWord => ("not-a-word", Alarm),
+            FaultKind::DecimalComma => ("decimal-comma", Alarm),
+            FaultKind::LetterO => ("letter-o-for-zero", Alarm),
+            FaultKind::StrayBracket => ("stray-bracket", Alarm),
+            FaultKind::TooManyWords => ("too-many-words", Alarm),
+            FaultKind::UnclosedComment => ("unclosed-comment", Warning),
+            FaultKind::NestedComment if self.control.policies.nested_comment == NestedComment::Alarm => {
+                ("nested-comment", Alarm)
+            }
+            FaultKind::NestedComment => ("nested-comment", Warning),
+            FaultKind::TextAfterSemicolon => ("text-after-semicolon", Warning),
+            FaultKind::FullWidth => ("full-width-character", Warning),
+        }
     }
 
     fn fault_alarm(&self, key: &'static str, fault: &Fault) -> Alarm {
@@ -212,15 +258,20 @@ impl Core {
                 _ if word.comma => {}
                 b'G' => self.sort_code(block, place, &mut codes)?,
                 b'M' => self.sort_auxiliary(block, place, &mut auxiliary)?,
-                b'N' => self.sequence_number(word)?,
+                b'N' => self.sequence_number(block, place)?,
                 b'B' | b'D' | b'H' => self.modal.in_force.rare_word(word),
                 b'O' => self.program_number(word, &auxiliary)?,
                 _ => {}
             }
         }
-        self.expects_program_number = false;
+        if self.expects_program_number {
+            self.first_block();
+        }
         if self.is_over {
             return Ok(());
+        }
+        if codes.one_shot.is_some() && codes.motion.is_some() {
+            self.one_shot_with_motion(block, &codes)?;
         }
         for (id, word) in codes.modes.iter().take(codes.mode_count) {
             self.run_mode(*id, &block.words[usize::from(*word)], block, environment)?;
@@ -232,15 +283,7 @@ impl Core {
         let function = codes.one_shot.map_or(motion, |one_shot| one_shot.id).get();
         self.check_letters(block, function, &auxiliary)?;
         if let Some(word) = block.word(b'F') {
-            let per_revolution =
-                function.takes_lead || self.modal.feed_mode == crate::modal::FeedMode::PerRevolution;
-            let feed = self.feed(word, per_revolution)?;
-            if function.takes_lead {
-                self.check_lead(word);
-            } else {
-                self.check_feed(word, feed, per_revolution);
-            }
-            self.modal.feed = Some(feed);
+            self.feed_word(word, function)?;
         }
         if block.present() & SPEED_OR_TOOL != 0 || self.spindle_may_change(&codes, &auxiliary) {
             self.speed_and_tool(block, &codes, &auxiliary)?;
@@ -278,7 +321,11 @@ impl Core {
         if self.corner.is_some() {
             self.check_open_path()?;
         }
-        if auxiliary.acts_behind() { self.behind_move(auxiliary, depth, block, environment) } else { Ok(()) }
+        if auxiliary.acts_behind() | self.stops_once {
+            self.behind_move(auxiliary, depth, block, environment)
+        } else {
+            Ok(())
+        }
     }
 
     /// Whether the words of a block make a motion in force run.
@@ -301,6 +348,12 @@ impl Core {
         let new = Code { id, code, word: place as u8 };
         match function.kind {
             Kind::Mode(_) => {
+                let group = self.dispatch.group(id);
+                for (earlier, first) in &codes.modes[..codes.mode_count] {
+                    if group != 0 && self.dispatch.group(*earlier) == group {
+                        self.same_group(block, *first, word)?;
+                    }
+                }
                 if codes.mode_count == CODES_MAX {
                     return Err(self.alarm("too-many-words", word));
                 }
@@ -309,12 +362,12 @@ impl Core {
             }
             Kind::OneShot(_) => {
                 if let Some(first) = codes.one_shot.replace(new) {
-                    self.same_group(block, first, word)?;
+                    self.same_group(block, first.word, word)?;
                 }
             }
             Kind::Motion(_) => {
                 if let Some(first) = codes.motion.replace(new) {
-                    self.same_group(block, first, word)?;
+                    self.same_group(block, first.word, word)?;
                 }
             }
         }
@@ -330,7 +383,9 @@ impl Core {
         let words = &block.words;
         for (place, first) in words.iter().enumerate() {
             let Some(again) = words[place + 1..].iter().find(|word| same(first, word)) else { continue };
-            if self.settings.duplicate_word_alarm {
+            if self.settings.duplicate_word_alarm
+                || self.control.policies.repeated_address == RepeatedAddress::Alarm
+            {
                 return Err(self.alarm("duplicate-word", again));
             }
             self.warn("repeated-address", first);
@@ -340,11 +395,11 @@ impl Core {
 
     /// Two codes of one group: the last counts, unless the parameter makes it an alarm.
     #[cold]
-    fn same_group(&mut self, block: &Block, first: Code, word: &Word) -> Result<(), Alarm> {
+    fn same_group(&mut self, block: &Block, first: u8, word: &Word) -> Result<(), Alarm> {
         if self.settings.duplicate_word_alarm {
             return Err(self.alarm("duplicate-word", word));
         }
-        self.warn("same-group-codes", &block.words[usize::from(first.word)]);
+        self.warn("same-group-codes", &block.words[usize::from(first)]);
         Ok(())
     }
 
@@ -456,11 +511,18 @@ impl Core {
     }
 
     #[inline]
-    fn sequence_number(&mut self, word: &Word) -> Result<(), Alarm> {
+    fn sequence_number(&mut self, block: &Block, place: usize) -> Result<(), Alarm> {
+        let word = &block.words[place];
+        if place > 0 && block.words[place - 1].address != b'O' {
+            self.warn("sequence-not-at-start", word);
+        }
         // Sequence numbers with leading zeros are common; only their value counts.
         let number = self.number(word)?;
         if number.has_point {
             return Err(self.alarm("point-not-allowed", word));
+        }
+        if number.digits < 0 {
+            return Err(self.alarm("minus-not-allowed", word));
         }
         match u32::try_from(number.digits) {
             Ok(value) if value < 10u32.pow(u32::from(self.control.limits.sequence_digits)) => {
@@ -485,14 +547,38 @@ impl Core {
             // The next program begins here: the one before had no end.
             return self.end_of_record();
         }
-        if number == 0
-            && self.control.policies.decimal_rule == turnwright_control::policy::DecimalRule::ByParameter
-        {
+        let digits = u32::from(self.control.limits.program_digits.min(8));
+        let is_forbidden_zero = number == 0 && self.control.policies.program_zero == ProgramZero::Alarm;
+        if is_forbidden_zero || number >= 10u32.pow(digits) {
             return Err(self.alarm("program-number-illegal", word));
         }
         self.program = Some(number);
         self.program_start = self.line_cursor();
         Ok(())
+    }
+
+    /// The first block of a program: without O its sequence number may name the program.
+    #[cold]
+    fn first_block(&mut self) {
+        self.expects_program_number = false;
+        let takes_sequence =
+            self.control.policies.unnumbered_program == UnnumberedProgram::TakesFirstSequence;
+        if takes_sequence && self.program.is_none() && self.frames.is_empty() {
+            self.program = self.at.sequence;
+        }
+    }
+
+    /// A code that acts once beside a motion code: it takes the axis words, or both are refused.
+    #[cold]
+    fn one_shot_with_motion(&self, block: &Block, codes: &Codes) -> Result<(), Alarm> {
+        match codes.one_shot {
+            Some(Code { word, .. })
+                if self.control.policies.one_shot_with_motion == OneShotWithMotion::Alarm =>
+            {
+                Err(self.alarm("one-shot-with-motion-code", &block.words[usize::from(word)]))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Whether a single cycle in force runs again in a block without axis words.
@@ -525,24 +611,4 @@ const SPEED_OR_TOOL: u32 = Block::bit(b'S') | Block::bit(b'T');
 /// Ways of writing that a file has everywhere or nowhere.
 const fn is_habit(kind: FaultKind) -> bool {
     matches!(kind, FaultKind::FullWidth | FaultKind::TextAfterSemicolon)
-}
-
-/// The diagnostic of a fault that the reader found.
-fn fault_key(kind: FaultKind) -> (&'static str, Severity) {
-    use Severity::{Alarm, Warning};
-    match kind {
-        FaultKind::NumberTooLong => ("number-too-long", Alarm),
-        FaultKind::TwoPoints => ("point-not-allowed", Alarm),
-        FaultKind::TwoSigns => ("minus-not-allowed", Alarm),
-        FaultKind::AddressWithoutValue => ("address-without-value", Alarm),
-        FaultKind::NotAWord => ("not-a-word", Alarm),
-        FaultKind::DecimalComma => ("decimal-comma", Alarm),
-        FaultKind::LetterO => ("letter-o-for-zero", Alarm),
-        FaultKind::StrayBracket => ("stray-bracket", Alarm),
-        FaultKind::TooManyWords => ("too-many-words", Alarm),
-        FaultKind::UnclosedComment => ("unclosed-comment", Warning),
-        FaultKind::NestedComment => ("nested-comment", Warning),
-        FaultKind::TextAfterSemicolon => ("text-after-semicolon", Warning),
-        FaultKind::FullWidth => ("full-width-character", Warning),
-    }
 }

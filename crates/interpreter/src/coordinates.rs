@@ -15,7 +15,7 @@ impl Core {
     pub(crate) fn target(&mut self, block: &Block) -> Result<Position<WorkTip>, Alarm> {
         let from = self.modal.position;
         let to = self.target_from(block, from)?;
-        self.in_range(to)
+        if self.is_in_range(to) { Ok(to) } else { Err(self.out_of_range(Some(block), to)) }
     }
 
     /// As [`Core::target`], with increments counted from `from`.
@@ -86,7 +86,7 @@ impl Core {
     fn say_missing_point(&mut self, word: &Word, digits: i64) {
         // Above this a value without a point is a length that somebody may mean.
         const SUSPICIOUS_BELOW: i64 = 1_000;
-        if digits.abs() >= SUSPICIOUS_BELOW || self.already_said("number-without-point", self.at.line) {
+        if digits.abs() >= SUSPICIOUS_BELOW || self.already_said_at("number-without-point", word) {
             return;
         }
         let value = self.modal.increment(&self.settings).nm() * digits;
@@ -98,18 +98,30 @@ impl Core {
         self.say(diagnostic);
     }
 
-    /// Refuses a place that the control cannot hold.
+    /// Whether the control can hold a place: X as a diameter.
     #[inline]
-    pub(crate) fn in_range(&self, to: Position<WorkTip>) -> Result<Position<WorkTip>, Alarm> {
+    fn is_in_range(&self, to: Position<WorkTip>) -> bool {
         let limit = self.settings.length_limit_nm;
-        if to.x.0.abs().nm() < limit && to.z.abs().nm() < limit { Ok(to) } else { Err(self.out_of_range(to)) }
+        to.x.to_diameter().0.abs().nm() < limit && to.z.abs().nm() < limit
     }
 
+    /// Refuses a computed place that the control cannot hold.
+    pub(crate) fn in_range(&self, to: Position<WorkTip>) -> Result<Position<WorkTip>, Alarm> {
+        if self.is_in_range(to) { Ok(to) } else { Err(self.out_of_range(None, to)) }
+    }
+
+    /// A place that the control cannot hold, at the word that asks for it; X as a diameter.
     #[cold]
-    fn out_of_range(&self, to: Position<WorkTip>) -> Alarm {
-        let value = if to.z.abs() > to.x.0.abs() { to.z } else { to.x.0 };
-        let diagnostic =
-            Diagnostic::alarm("position-out-of-range").at(self.block_place()).with("value", value);
-        self.finish(diagnostic)
+    fn out_of_range(&self, block: Option<&Block>, to: Position<WorkTip>) -> Alarm {
+        let diameter = to.x.to_diameter().0;
+        let (value, letters) = if diameter.abs().nm() < self.settings.length_limit_nm {
+            (to.z, [b'Z', b'W'])
+        } else {
+            (diameter, [b'X', b'U'])
+        };
+        let words = letters.into_iter().filter_map(|letter| block.and_then(|block| block.word(letter)));
+        let word = words.max_by_key(|word| word.start);
+        let place = word.map_or_else(|| self.block_place(), |word| self.place(word));
+        self.finish(Diagnostic::alarm("position-out-of-range").at(place).with("value", value))
     }
 }

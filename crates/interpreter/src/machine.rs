@@ -2,7 +2,7 @@
 
 use std::collections::{HashSet, VecDeque};
 
-use turnwright_canon::{Command, CycleOrigin};
+use turnwright_canon::{Command, CycleOrigin, PathMode};
 use turnwright_control::{Control, Setup, SetupFault};
 use turnwright_cycles::Element;
 use turnwright_diagnostics::{Diagnostic, SourceId};
@@ -11,8 +11,8 @@ use turnwright_units::{Displacement, Length, Position, Radius, SurfaceSpeed, Wor
 
 use crate::Environment;
 use crate::auxiliary::Waiting;
-use crate::data_list::{DataList, ToolLife};
 use crate::corner::OpenPath;
+use crate::data_list::{DataList, ToolLife};
 use crate::figure::FigureRange;
 use crate::flow::{Frame, ProgramIndex};
 use crate::functions::{Dispatch, FunctionId};
@@ -119,8 +119,12 @@ pub(crate) struct Core {
     pub(crate) finished_first: Vec<u32>,
     pub(crate) last_spindle: Option<turnwright_canon::Action>,
     pub(crate) parts: Parts,
+    /// The block in work comes to rest at its end, those behind it do not.
+    pub(crate) stops_once: bool,
     /// The tool has coordinates that no command told, since the end of the program.
     pub(crate) has_untold_place: bool,
+    /// Moves meet in another way, and no command told it.
+    pub(crate) has_untold_path_mode: bool,
     pub(crate) blocks_run: u64,
     pub(crate) cycle_moves: u64,
     pub(crate) has_started: bool,
@@ -130,7 +134,8 @@ pub(crate) struct Core {
     pub(crate) sync: Option<SyncReason>,
     pub(crate) warnings: Vec<Diagnostic>,
     pub(crate) warnings_given: usize,
-    pub(crate) said: HashSet<(&'static str, u32)>,
+    /// What was said by key, line and column; column 0 for the whole line, line 0 for the whole run.
+    pub(crate) said: HashSet<(&'static str, u32, u32)>,
     /// The warning about a standing spindle was given.
     pub(crate) said_spindle_stands: bool,
 }
@@ -169,6 +174,7 @@ impl Interpreter {
             is_inch: bit("inch-input"),
             feed_mode: settings.feed_mode_at_power_on,
             feed: None,
+            path_mode: PathMode::default(),
             speed_mode: SpeedMode::Constant,
             rpm: Default::default(),
             surface: SurfaceSpeed::from_m_per_min(0),
@@ -216,7 +222,9 @@ impl Interpreter {
             roughed: Vec::new(),
             finished_first: Vec::new(),
             last_spindle: None,
+            stops_once: false,
             has_untold_place: false,
+            has_untold_path_mode: false,
             blocks_run: 0,
             cycle_moves: 0,
             has_started: false,
@@ -229,7 +237,7 @@ impl Interpreter {
             said_spindle_stands: false,
         };
         if setup.machine.is_some() || setup.rates.contains_key("reference") {
-            core.said.insert(("home-is-assumed", 0));
+            core.said.insert(("home-is-assumed", 0, 0));
         }
         core.modal.feed = core.initial_feed();
         core.modal.is_incremental = core.starts_incremental();

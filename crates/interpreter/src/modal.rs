@@ -1,6 +1,6 @@
 //! The modal state: everything that stays in force from block to block.
 
-use turnwright_canon::SpindleState;
+use turnwright_canon::{PathMode, SpindleState};
 use turnwright_control::Parameters;
 use turnwright_units::{LeastIncrement, Length, Position, Radius, Rpm, SurfaceSpeed, WorkTip};
 
@@ -45,6 +45,7 @@ pub(crate) struct Modal {
     pub(crate) feed_mode: FeedMode,
     /// The feed word in force: mm per minute or per revolution.
     pub(crate) feed: Option<Length>,
+    pub(crate) path_mode: PathMode,
     pub(crate) speed_mode: SpeedMode,
     pub(crate) rpm: Rpm,
     pub(crate) surface: SurfaceSpeed,
@@ -91,6 +92,8 @@ pub(crate) struct Settings {
     pub(crate) several_auxiliary: bool,
     /// Largest number of an M word.
     pub(crate) auxiliary_max: u32,
+    /// Largest number of an S word.
+    pub(crate) speed_max: u32,
     pub(crate) linear_at_power_on: bool,
     pub(crate) incremental_at_power_on: bool,
     pub(crate) feed_mode_at_power_on: FeedMode,
@@ -179,6 +182,7 @@ impl Settings {
             duplicate_word_alarm: bit("duplicate-word-alarm"),
             several_auxiliary: bit("several-auxiliary-codes"),
             auxiliary_max: 10u32.pow(count("auxiliary-digits").clamp(2, 8)) - 1,
+            speed_max: 10u32.pow(count("spindle-digits").clamp(1, 8)) - 1,
             linear_at_power_on: bit("linear-at-power-on"),
             incremental_at_power_on: bit("incremental-at-power-on"),
             feed_mode_at_power_on: if bit("feed-per-minute-at-power-on") {

@@ -107,17 +107,19 @@ impl Core {
 
     /// Whether this was said about this line before; a block in a loop warns once.
     pub(crate) fn already_said(&mut self, key: &'static str, line: u32) -> bool {
-        if self.said.len() > WARNINGS_MAX * 4 {
-            return true;
-        }
-        !self.said.insert((key, line))
+        self.said.len() > WARNINGS_MAX * 4 || !self.said.insert((key, line, 0))
+    }
+
+    /// Whether this was said about this word before.
+    pub(crate) fn already_said_at(&mut self, key: &'static str, word: &Word) -> bool {
+        self.said.len() > WARNINGS_MAX * 4 || !self.said.insert((key, self.at.line, word.start + 1))
     }
 
     /// Keeps a diagnostic for the caller.
     pub(crate) fn say(&mut self, diagnostic: Diagnostic) {
         if self.is_capturing() {
             // The figure is read a second time by the finishing cycle; what is odd in it is said once.
-            self.said.insert((diagnostic.key, diagnostic.place.map_or(0, |place| place.line)));
+            self.said.insert((diagnostic.key, diagnostic.place.map_or(0, |place| place.line), 0));
         }
         if self.warnings_given < WARNINGS_MAX {
             self.warnings_given += 1;

@@ -10,7 +10,7 @@
 //!
 //! Source: modal groups and their state after reset, part counter, both families.
 
-use turnwright_canon::{Action, SpindleState};
+use turnwright_canon::{Action, PathMode, SpindleState};
 use turnwright_control::policy::SpeedLimitAtReset;
 use turnwright_units::Length;
 
@@ -74,6 +74,8 @@ impl Core {
             self.modal.feed_mode = self.settings.feed_mode_at_power_on;
             self.modal.feed = self.initial_feed();
             self.modal.is_incremental = self.starts_incremental();
+            self.has_untold_path_mode |= self.modal.path_mode != PathMode::default();
+            self.modal.path_mode = PathMode::default();
         }
         if clears || self.settings.reset_selects_first_work {
             self.modal.in_force.codes[WORK_COORDINATES] = self.dispatch.codes_at_power_on[WORK_COORDINATES];
@@ -106,6 +108,7 @@ impl Core {
         self.corner = None;
         self.waiting = None;
         self.data_list = None;
+        self.stops_once = false;
         self.frames.clear();
         self.roughed.clear();
         self.finished_first.clear();
@@ -147,6 +150,9 @@ impl Interpreter {
         self.core.is_over = false;
         if std::mem::take(&mut self.core.has_untold_place) {
             self.core.emit(Action::Relocate { to: self.core.tip, others: None });
+        }
+        if std::mem::take(&mut self.core.has_untold_path_mode) {
+            self.core.emit(Action::PathMode(PathMode::default()));
         }
         self.core.blocks_run = 0;
         self.core.cycle_moves = 0;

@@ -27,8 +27,7 @@ impl Core {
 
     /// The number of an S word: whole, without sign, as long as the control allows.
     pub(crate) fn speed_value(&self, word: &Word) -> Result<u32, Alarm> {
-        let digits = u32::from(self.control.limits.spindle_digits.min(9));
-        self.whole(word, 10u32.pow(digits) - 1)
+        self.whole(word, self.settings.speed_max)
     }
 
     /// The spindle speed at the tool's present place under constant surface speed.

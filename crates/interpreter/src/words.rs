@@ -2,11 +2,13 @@
 //!
 //! Source: numbers and decimal points of both families; diameter and radius words by role.
 
-use turnwright_control::policy::{CycleIntegerWords, FineDigits};
+use turnwright_control::policy::{CycleIntegerWords, FineDigits, IntegerWords, MissingPoint, NegativeFeed};
 use turnwright_syntax::{Decimal, Value, Word};
 use turnwright_units::{Diameter, Length, Radius};
 
+use crate::functions::Function;
 use crate::machine::Core;
+use crate::modal::FeedMode;
 use crate::report::Alarm;
 
 /// What a radial word means: a place or way across the work, or a distance from its surface.
@@ -73,9 +75,12 @@ impl Core {
     fn length_of(&self, word: &Word, number: Decimal, counts: bool) -> Result<Length, Alarm> {
         let increment = self.modal.increment(&self.settings).nm();
         let digits_max = POWER[usize::from(self.control.limits.number_digits.min(9))];
+        if number.digits.abs() >= digits_max {
+            return Err(self.alarm("number-too-long", word));
+        }
         if counts {
-            if number.digits.abs() >= digits_max {
-                return Err(self.alarm("number-too-long", word));
+            if self.control.policies.missing_point == MissingPoint::Alarm && number.digits != 0 {
+                return Err(self.alarm("point-required", word));
             }
             return Ok(Length::from_nm(number.digits * increment));
         }
@@ -128,16 +133,45 @@ impl Core {
     #[inline]
     pub(crate) fn whole(&self, word: &Word, max: u32) -> Result<u32, Alarm> {
         let number = self.number(word)?;
-        if number.has_point {
-            return Err(self.alarm("point-not-allowed", word));
-        }
-        if number.is_negative && number.digits != 0 {
+        let digits = if number.has_point { self.whole_with_point(word, number)? } else { number.digits };
+        if number.is_negative && digits != 0 {
             return Err(self.alarm("minus-not-allowed", word));
         }
-        match u32::try_from(number.digits) {
+        match u32::try_from(digits) {
             Ok(value) if value <= max => Ok(value),
             _ => Err(self.alarm("number-too-long", word)),
         }
+    }
+
+    /// A whole number with a point behind it.
+    #[cold]
+    fn whole_with_point(&self, word: &Word, number: Decimal) -> Result<i64, Alarm> {
+        match (self.control.policies.integer_words, number.scaled(0)) {
+            (IntegerWords::FractionRefused, Some((whole, false))) => Ok(whole),
+            _ => Err(self.alarm("point-not-allowed", word)),
+        }
+    }
+
+    /// The F word of a block.
+    #[inline]
+    pub(crate) fn feed_word(&mut self, word: &Word, function: &Function) -> Result<(), Alarm> {
+        let per_revolution = function.takes_lead || self.modal.feed_mode == FeedMode::PerRevolution;
+        let mut number = self.number(word)?;
+        if number.is_negative && number.digits != 0 {
+            if function.takes_lead || self.control.policies.negative_feed == NegativeFeed::Alarm {
+                return Err(self.alarm("minus-not-allowed", word));
+            }
+            self.warn("negative-feed-as-positive", word);
+            number.digits = number.digits.abs();
+        }
+        let feed = self.feed(word, number, per_revolution)?;
+        if function.takes_lead {
+            self.check_lead(word);
+        } else {
+            self.check_feed(word, feed, per_revolution);
+        }
+        self.modal.feed = Some(feed);
+        Ok(())
     }
 
     /// A code times ten: `G71` is 710, `G50.3` is 503.
@@ -156,14 +190,10 @@ impl Core {
         }
     }
 
-    /// A feed word. Without a point it counts hundredths of a millimetre per revolution (or thousandths), whole
+    /// A feed from the number of its word. Without a point it counts hundredths of a millimetre per revolution (or thousandths), whole
     /// millimetres per minute (or thousandths): the parameters say which.
     #[inline]
-    pub(crate) fn feed(&self, word: &Word, per_revolution: bool) -> Result<Length, Alarm> {
-        let number = self.number(word)?;
-        if number.is_negative && number.digits != 0 {
-            return Err(self.alarm("minus-not-allowed", word));
-        }
+    fn feed(&self, word: &Word, number: Decimal, per_revolution: bool) -> Result<Length, Alarm> {
         if number.has_point && !self.modal.is_inch && number.scale <= 6 && number.digits < 1_000_000_000 {
             return Ok(Length::from_nm(number.digits * POWER[usize::from(6 - number.scale)]));
         }
@@ -198,7 +228,7 @@ impl Core {
 
     /// Warns about a feed that is usual in the other feed mode.
     #[inline]
-    pub(crate) fn check_feed(&mut self, word: &Word, feed: Length, per_revolution: bool) {
+    fn check_feed(&mut self, word: &Word, feed: Length, per_revolution: bool) {
         // More than this a revolution, or less than this a minute, is hardly ever meant.
         const PER_REVOLUTION_MAX: Length = Length::from_mm(10);
         const PER_MINUTE_MIN: Length = Length::from_mm(1);

@@ -191,9 +191,12 @@ impl Clock {
                 self.axes.interpolate(*interpolation);
                 self.still(Kind::Other, 0.0)
             }
-            Action::Coupling(_) | Action::Stop | Action::OptionalStop | Action::End | Action::Message(_) => {
-                self.still(Kind::Other, 0.0)
-            }
+            Action::PathMode(_)
+            | Action::Coupling(_)
+            | Action::Stop
+            | Action::OptionalStop
+            | Action::End
+            | Action::Message(_) => self.still(Kind::Other, 0.0),
         };
         if timing.kind != Kind::Threading {
             self.thread_rpm = None;

@@ -6,8 +6,8 @@
 //! but room in the buffer.
 
 use turnwright_canon::{
-    Action, Command, Coolant, Dwell, Interpolation, Origin, OtherAxes, Shape, SidePlane, SpindleSpeed,
-    SpindleState, Turn,
+    Action, Command, Coolant, Dwell, Interpolation, Origin, OtherAxes, PathMode, Shape, SidePlane,
+    SpindleSpeed, SpindleState, Turn,
 };
 use turnwright_units::{
     Feed, LeastIncrement, Length, Position, WorkTip, write_degrees, write_fixed, write_millimetres,
@@ -75,6 +75,11 @@ pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
                 write_length(out, br#","lead_end":"#, end.0, FINE_DECIMALS);
             }
         }
+        Action::PathMode(mode) => out.extend_from_slice(match mode {
+            PathMode::Continuous => br#"{"op":"path-mode","mode":"continuous""#.as_slice(),
+            PathMode::ExactStop => br#"{"op":"path-mode","mode":"exact-stop""#,
+            PathMode::Tapping => br#"{"op":"path-mode","mode":"tapping""#,
+        }),
         Action::Dwell(Dwell::Time(time)) => {
             out.extend_from_slice(br#"{"op":"dwell","seconds":"#);
             write_float(out, time.0);

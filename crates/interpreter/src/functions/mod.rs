@@ -12,8 +12,10 @@ mod dwell;
 mod finishing;
 mod groove;
 mod linear;
+mod look_ahead;
 mod modes;
 mod multi_thread;
+mod path_mode;
 mod pattern;
 mod rapid;
 mod reference_return;
@@ -201,7 +203,12 @@ static ALL: &[&Function] = &[
     &modes::INCREMENTAL,
     &modes::PLANE_ZX,
     &modes::HOLE_CYCLE_OFF,
-    &modes::CUTTING_MODE,
+    &path_mode::EXACT_STOP,
+    &path_mode::EXACT_STOP_MODE,
+    &path_mode::TAPPING_MODE,
+    &path_mode::CUTTING_MODE,
+    &look_ahead::LOOK_AHEAD_CONTROL,
+    &look_ahead::ADVANCED_PREVIEW,
     &modes::DOUBLE_TURRET_MIRROR_OFF,
     &coordinate_setting::COORDINATE_SETTING,
     &data_setting::DATA_SETTING,

@@ -22,7 +22,6 @@ pub(super) static PLANE_ZX: Function = Function::mode("plane-zx", |_, _| Ok(()))
 
 // These cancel modes that nothing in this version can switch on: they are in force already.
 pub(super) static HOLE_CYCLE_OFF: Function = Function::mode("hole-cycle-off", |_, _| Ok(()));
-pub(super) static CUTTING_MODE: Function = Function::mode("cutting-mode", |_, _| Ok(()));
 pub(super) static DOUBLE_TURRET_MIRROR_OFF: Function =
     Function::mode("double-turret-mirror-off", |_, _| Ok(()));
 

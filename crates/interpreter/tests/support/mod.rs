@@ -60,7 +60,12 @@ impl Conditions {
 
 /// Runs a program to its end; refuses to run for ever.
 pub fn run(text: &[u8], conditions: &Conditions) -> Run {
-    let mut control = Control::load(&conditions.control).unwrap_or_else(|fault| panic!("{fault:?}"));
+    let control = Control::load(&conditions.control).unwrap_or_else(|fault| panic!("{fault:?}"));
+    run_on(control, text, conditions)
+}
+
+/// As [`run`], on a control whose policies the caller has changed.
+pub fn run_on(mut control: Control, text: &[u8], conditions: &Conditions) -> Run {
     let setup = Setup::parse(&conditions.setup).unwrap_or_else(|fault| panic!("{fault:?}"));
     for (number, value) in setup.parameter_words().iter().chain(&conditions.parameters) {
         control.parameters.set(number, value).unwrap_or_else(|fault| panic!("{fault:?}"));

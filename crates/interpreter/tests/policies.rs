@@ -1,0 +1,82 @@
+//! Readings of policies that none of the controls has as delivered: a machine may differ.
+
+mod support;
+
+use support::{Conditions, Run, run_on};
+use turnwright_control::Control;
+use turnwright_control::policy::{
+    MissingPoint, NestedComment, OneShotWithMotion, Policies, RepeatedAddress, SpeedLimitAtReset,
+    StoppingCodes,
+};
+
+fn run_with(text: &str, restarts: u32, change: impl FnOnce(&mut Policies)) -> Run {
+    let mut control = Control::load("fanuc-0i-tf").expect("a control");
+    change(&mut control.policies);
+    run_on(control, text.as_bytes(), &Conditions { restarts, ..Conditions::on("fanuc-0i-tf") })
+}
+
+#[test]
+fn a_length_may_need_its_point() {
+    let change = |policies: &mut Policies| policies.missing_point = MissingPoint::Alarm;
+    assert_eq!(run_with("G00 X20. Z0\nM30\n", 0, change).diagnostics(), "");
+    let run = run_with("G00 X20. Z5\nM30\n", 0, change);
+    assert_eq!(run.diagnostics(), "alarm PS5073 point-required 1:10-12\n");
+}
+
+#[test]
+fn one_address_twice_may_be_refused() {
+    let run = run_with("G00 X10. X20. Z0\nM30\n", 0, |policies| {
+        policies.repeated_address = RepeatedAddress::Alarm;
+    });
+    assert_eq!(run.diagnostics(), "alarm PS5074 duplicate-word 1:10-14\n");
+}
+
+#[test]
+fn a_code_that_acts_once_may_refuse_a_motion_code() {
+    let change = |policies: &mut Policies| policies.one_shot_with_motion = OneShotWithMotion::Alarm;
+    let run = run_with("G01 G04 X2.\nM30\n", 0, change);
+    assert_eq!(run.alarm.expect("an alarm").key, "one-shot-with-motion-code");
+    assert!(run_with("G04 X2.\nG00 X5.\nM30\n", 0, change).alarm.is_none());
+}
+
+#[test]
+fn a_bracket_inside_a_remark_may_be_refused() {
+    let run = run_with("(A (B) C)\nG00 X20.\nM30\n", 0, |policies| {
+        policies.nested_comment = NestedComment::Alarm;
+    });
+    assert_eq!(run.alarm.expect("an alarm").key, "nested-comment");
+}
+
+#[test]
+fn stopping_codes_may_act_with_the_move() {
+    let text = "S500 M03\nG00 X20. Z2. M05\nX30. M09\nM30\n";
+    let with = run_with(text, 0, |policies| policies.stopping_codes = StoppingCodes::WithTheMove);
+    let expected = "spindle cw 500rpm\nspindle stop 500rpm\nrapid d20 z2\ncoolant off\nrapid d30 z2\nend\n";
+    assert_eq!(with.listing(), expected);
+    let behind = run_with(text, 0, |_| {});
+    let expected = "spindle cw 500rpm\nrapid d20 z2\nspindle stop 500rpm\nrapid d30 z2\ncoolant off\nend\n";
+    assert_eq!(behind.listing(), expected);
+}
+
+#[test]
+fn a_reset_may_cancel_the_speed_limit() {
+    let text = "G00 X40. Z2.\nG96 S120 M03\nG50 S2000\nM30\n";
+    let cancelled =
+        run_with(text, 1, |policies| policies.speed_limit_at_reset = SpeedLimitAtReset::Cancelled);
+    let second = cancelled.listing().rsplit("end\n").nth(1).expect("two runs").to_string();
+    assert_eq!(second, "spindle cw 120m/min\nspindle cw 120m/min max2000\n");
+    let kept = run_with(text, 1, |_| {}).listing();
+    assert_eq!(kept.rsplit("end\n").nth(1), Some("spindle cw 120m/min max2000\n"));
+}
+
+#[test]
+fn a_program_without_o_takes_its_first_sequence_number() {
+    let text = b"N1234 G00 X20. Z2.\nN10 X10.\nM30\n";
+    let number = |name: &str| {
+        let control = Control::load(name).expect("a control");
+        let run = run_on(control, text, &Conditions::on(name));
+        run.commands.iter().map(|command| command.origin.program).collect::<Vec<_>>()
+    };
+    assert_eq!(number("fanuc-0i-tc"), [Some(1234); 3]);
+    assert_eq!(number("fanuc-0i-td"), [None; 3]);
+}
