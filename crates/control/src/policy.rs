@@ -172,12 +172,15 @@ policies! {
     }
     /// An arc whose end point does not lie on the circle given by its centre.
     arc_end_error: ArcEndError {
-        /// An arc with the start radius, then a straight line to the end point.
+        /// An arc with the start radius, then a straight line along one axis to the end point.
         TailLine,
         /// The radius changes with the angle, so that the end point is met.
         Spiral,
         /// The start radius is kept and the centre moved so that both ends fit.
         Recentre,
+        /// The same, however far the radii of start and end differ: only a chord longer than the circle is wide is
+        /// refused.
+        RecentreAlways,
     }
     /// A negative radius word of an arc.
     negative_arc_radius: NegativeArcRadius {

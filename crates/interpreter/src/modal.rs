@@ -88,6 +88,7 @@ pub(crate) struct Settings {
     pub(crate) feed_per_min_fine: bool,
     pub(crate) arc_tolerance_mm: f64,
     pub(crate) arc_without_radius_alarm: bool,
+    pub(crate) arc_small_radius_alarm: bool,
     pub(crate) duplicate_word_alarm: bool,
     pub(crate) several_auxiliary: bool,
     /// Largest number of an M word.
@@ -179,6 +180,7 @@ impl Settings {
             feed_per_min_fine: bit("feed-per-min-fine"),
             arc_tolerance_mm: parameters.value("arc-tolerance"),
             arc_without_radius_alarm: bit("arc-without-radius-alarm"),
+            arc_small_radius_alarm: bit("arc-small-radius-alarm"),
             duplicate_word_alarm: bit("duplicate-word-alarm"),
             several_auxiliary: bit("several-auxiliary-codes"),
             auxiliary_max: 10u32.pow(count("auxiliary-digits").clamp(2, 8)) - 1,

@@ -7,7 +7,8 @@
 //! full circle.
 //!
 //! An end point off the circle by more than the tolerance (3410) is an alarm; inside it the control's policy
-//! says how both ends are met: arc and straight tail, a moved centre, or a radius that changes along the arc.
+//! says how both ends are met: arc and straight tail along one axis, a moved centre, or a radius that changes along
+//! the arc.
 //! The last is given as an arc about the given centre (its ends differ in radius by no more than the tolerance).
 //!
 //! Source: circular interpolation of both families.
@@ -15,7 +16,7 @@
 use turnwright_canon::{Action, Shape, Turn};
 use turnwright_control::policy::{ArcEndError, CornerWords, NegativeArcRadius};
 use turnwright_diagnostics::Diagnostic;
-use turnwright_geometry::{ArcFault, Point, centre_from_radius};
+use turnwright_geometry::{ArcFault, Point, centre_from_radius, sweep_rad};
 use turnwright_syntax::{Block, Word};
 use turnwright_units::{Feed, LeastIncrement, Length, Position, Radius, WorkTip};
 
@@ -41,6 +42,12 @@ pub(super) static ARC_COUNTER_CLOCKWISE: Function =
 
 /// Letters of corners where they may lie between any cuts.
 const CORNERS: u32 = super::letters(b"LD");
+
+/// What programs that were written by a computer are off by; more is worth a warning.
+const ROUNDED_ARC_MM: f64 = 0.01;
+
+/// An arc by its radius that turns by more than this many degrees is nearly a half circle.
+const HALF_CIRCLE_DEG: f64 = 179.0;
 
 /// An arc to be cut.
 struct Arc<'b> {
@@ -122,12 +129,23 @@ impl Core {
         if radius.0.is_zero() {
             return Err(self.arc_alarm(word, 0.0));
         }
+        if let Some(ignored) = arc.block.word(b'I').or(arc.block.word(b'K')) {
+            self.warn("arc-centre-ignored", ignored);
+        }
         if arc.from == arc.to {
             // An arc of no degrees: nothing moves.
+            self.warn("arc-goes-nowhere", word);
             return Ok(());
         }
-        let tolerance = self.settings.arc_tolerance_mm.max(0.0);
+        let tolerance =
+            if self.settings.arc_small_radius_alarm { 0.0 } else { self.settings.arc_tolerance_mm.max(0.0) };
         let clockwise = arc.turn == Turn::Clockwise;
+        let half_chord = point(arc.from).distance(point(arc.to)) / 2.0;
+        if self.control.policies.negative_arc_radius == NegativeArcRadius::Alarm
+            && half_chord > radius.to_mm() * (HALF_CIRCLE_DEG / 2.0).to_radians().sin()
+        {
+            self.warn("half-circle-by-radius", word);
+        }
         match centre_from_radius(point(arc.from), point(arc.to), radius.to_mm(), clockwise, tolerance) {
             Ok(centre) => match place(centre) {
                 Some(centre) => self.cut_arc(arc, centre),
@@ -159,48 +177,69 @@ impl Core {
         let at_end = point(centre).distance(point(arc.to));
         let error = (at_start - at_end).abs();
         let tolerance = self.settings.arc_tolerance_mm;
-        if tolerance > 0.0 && error > tolerance {
+        let policy = self.control.policies.arc_end_error;
+        if tolerance > 0.0 && error > tolerance && policy != ArcEndError::RecentreAlways {
             return Err(self.arc_alarm(&word, error));
         }
         // Less than an increment is the rounding of the words.
         if error <= self.modal.increment(&self.settings).to_mm() {
             return self.cut_arc(arc, centre);
         }
-        match self.control.policies.arc_end_error {
+        match policy {
             ArcEndError::Spiral => self.cut_arc(arc, centre),
-            ArcEndError::Recentre => {
-                let clockwise = arc.turn == Turn::Clockwise;
-                let short =
-                    turnwright_geometry::sweep_rad(point(arc.from), point(arc.to), point(centre), clockwise)
-                        .abs()
-                        <= std::f64::consts::PI;
-                let radius = if short { at_start } else { -at_start };
-                let half = point(arc.from).distance(point(arc.to)) / 2.0;
-                match centre_from_radius(point(arc.from), point(arc.to), radius, clockwise, 0.0) {
-                    Ok(moved) => match place(moved) {
-                        Some(moved) => self.cut_arc(arc, moved),
-                        None => Err(self.alarm("number-too-long", &word)),
-                    },
-                    Err(_) => Err(self.arc_alarm(&word, half - at_start)),
-                }
-            }
-            ArcEndError::TailLine => self.arc_and_tail(arc, centre, at_start, at_end),
+            ArcEndError::Recentre => self.arc_with_moved_centre(arc, centre, 0.0, &word),
+            ArcEndError::RecentreAlways => self.arc_with_moved_centre(arc, centre, tolerance.max(0.0), &word),
+            ArcEndError::TailLine => self.arc_and_tail(arc, centre, at_start),
+        }?;
+        if error > ROUNDED_ARC_MM {
+            self.warn("arc-end-adjusted", &word);
+        }
+        Ok(())
+    }
+
+    /// An arc with the radius of its start about a centre that both ends fit; the way round stays as it was.
+    fn arc_with_moved_centre(
+        &mut self,
+        arc: &Arc<'_>,
+        centre: Position<WorkTip>,
+        tolerance_mm: f64,
+        word: &Word,
+    ) -> Result<(), Alarm> {
+        let clockwise = arc.turn == Turn::Clockwise;
+        let (from, to) = (point(arc.from), point(arc.to));
+        let radius_mm = point(centre).distance(from);
+        let is_short = sweep_rad(from, to, point(centre), clockwise).abs() <= std::f64::consts::PI;
+        let signed = if is_short { radius_mm } else { -radius_mm };
+        match centre_from_radius(from, to, signed, clockwise, tolerance_mm) {
+            Ok(moved) => match place(moved) {
+                Some(moved) => self.cut_arc(arc, moved),
+                None => Err(self.alarm("number-too-long", word)),
+            },
+            Err(_) => Err(self.arc_alarm(word, from.distance(to) / 2.0 - radius_mm)),
         }
     }
 
-    /// An arc with the radius of its start to the ray of the end point, then straight to the end point.
+    /// An arc with the radius of its start until one axis is where it ends, then straight along the other.
     fn arc_and_tail(
         &mut self,
         arc: &Arc<'_>,
         centre: Position<WorkTip>,
         radius_mm: f64,
-        end_mm: f64,
     ) -> Result<(), Alarm> {
         let (middle, end) = (point(centre), point(arc.to));
-        let scale = if end_mm > 0.0 { radius_mm / end_mm } else { return self.cut_arc(arc, centre) };
-        let on_circle =
-            Point::new(middle.x + (end.x - middle.x) * scale, middle.z + (end.z - middle.z) * scale);
-        let Some(stop) = place(on_circle) else { return self.cut_arc(arc, centre) };
+        let (x, z) = (end.x - middle.x, end.z - middle.z);
+        // The place on the circle with one coordinate of the end point, on its side of the centre.
+        let beside = |given: f64, found: f64| {
+            let squared = radius_mm * radius_mm - given * given;
+            (squared >= 0.0).then(|| squared.sqrt().copysign(found))
+        };
+        let with_end_z = beside(z, x).map(|x| Point::new(middle.x + x, end.z));
+        let with_end_x = beside(x, z).map(|z| Point::new(end.x, middle.z + z));
+        let nearest = [with_end_z, with_end_x]
+            .into_iter()
+            .flatten()
+            .min_by(|one, other| one.distance(end).total_cmp(&other.distance(end)));
+        let Some(stop) = nearest.and_then(place) else { return self.cut_arc(arc, centre) };
         let increment = self.modal.increment(&self.settings);
         let stop =
             Position::new(stop.x.to_diameter().rounded(increment).to_radius(), stop.z.rounded(increment));
