@@ -103,6 +103,12 @@ pub enum Interpolation {
 }
 
 impl Interpolation {
+    /// Place on the virtual axis of a cylinder where the rotary axis stands at `angle`: the way round its
+    /// surface, rounded to the nanometre.
+    pub fn unrolled(radius: Radius, angle: Angle) -> Length {
+        Length::from_nm((radius.to_mm() * angle.to_radians() * 1e6).round() as i64)
+    }
+
     /// Where X and the rotary axis really are at the end of a move to `to` and `v`; `before` is the angle at its
     /// start. Computed, and rounded once to the nanometre and the billionth of a degree.
     ///

@@ -51,6 +51,9 @@ pub struct FunctionEntry {
     only: Option<Vec<String>>,
     #[serde(default)]
     not_on: Vec<String>,
+    /// What it does cannot be told from a program: it is refused for good.
+    #[serde(default)]
+    pub outside_scope: bool,
     /// Formats, with the letters of system A.
     #[serde(default)]
     pub forms: Vec<String>,

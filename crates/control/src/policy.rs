@@ -235,6 +235,41 @@ policies! {
         /// From the figure itself, or by the first block when the parameter says so.
         ByTypeParameter,
     }
+    /// Which plane the turning cycles work in.
+    cycle_plane: CyclePlane {
+        /// The turning plane of Z and X only.
+        TurningOnly,
+        /// Whichever plane is in force.
+        Follows,
+    }
+    /// Feed modes in which polar and cylindrical interpolation may begin.
+    interpolation_feed: InterpolationFeed {
+        /// Feed per minute only.
+        PerMinute,
+        /// Both.
+        Any,
+    }
+    /// Positioning in polar interpolation.
+    polar_rapid: PolarRapid {
+        /// Refused: the mode is left first.
+        Alarm,
+        /// Straight in the polar plane.
+        Allowed,
+    }
+    /// A feed at which the rotary axis cannot follow near the spindle axis in polar interpolation.
+    polar_overspeed: PolarOverspeed {
+        /// Refused.
+        Alarm,
+        /// Cut, with a warning: what the machine does is not known.
+        Warn,
+    }
+    /// Whether words of the rotary axis can be lengths in cylindrical interpolation.
+    cylinder_lengths: CylinderLengths {
+        /// No: they are degrees.
+        Never,
+        /// With `K1` in the block that begins it.
+        ByWord,
+    }
     /// What roughing with pockets does.
     type_two: TypeTwo {
         /// It exists.

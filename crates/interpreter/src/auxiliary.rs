@@ -275,6 +275,7 @@ impl Auxiliary {
             core.emit(Action::Coolant(coolant));
         }
         for code in &self.others[..usize::from(self.other_count)] {
+            core.axes.machine_code(*code);
             core.emit(Action::Auxiliary { code: *code });
         }
     }

@@ -12,6 +12,7 @@ use turnwright_syntax::{Block, ExtentKind, Fault, FaultKind, Word, scan_block};
 
 use crate::Environment;
 use crate::auxiliary::Auxiliary;
+use crate::axes::Plane;
 use crate::functions::{Function, FunctionId, Kind};
 use crate::machine::{BlockPlace, Core};
 use crate::report::Alarm;
@@ -270,6 +271,9 @@ impl Core {
         if self.is_over {
             return Ok(());
         }
+        if self.axes.is_virtual() {
+            self.check_virtual_plane(block)?;
+        }
         if codes.one_shot.is_some() && codes.motion.is_some() {
             self.one_shot_with_motion(block, &codes)?;
         }
@@ -282,6 +286,9 @@ impl Core {
         let motion = self.modal.motion;
         let function = codes.one_shot.map_or(motion, |one_shot| one_shot.id).get();
         self.check_letters(block, function, &auxiliary)?;
+        if self.axes.plane != Plane::Zx {
+            self.refuse_cycle_plane(block, function)?;
+        }
         if let Some(word) = block.word(b'F') {
             self.feed_word(word, function)?;
         }
@@ -331,7 +338,7 @@ impl Core {
     /// Whether the words of a block make a motion in force run.
     #[inline]
     fn is_triggered(&self, block: &Block, function: &Function, auxiliary: &Auxiliary) -> bool {
-        let letters = block.present() & function.trigger;
+        let letters = block.present() & (function.trigger | (self.axes.letters & function.other_axes));
         (letters != 0 && letters & !auxiliary.letters() != 0)
             || (block.has_comma && function.draws_lines && self.gives_angle(block))
     }
@@ -408,7 +415,13 @@ impl Core {
         let functions = turnwright_control::Functions::load();
         let quote = self.quote(word.start, word.end);
         match functions.by_code(code, self.dispatch.system, self.control.code_table) {
-            Some((name, _)) => self.not_supported(name, word),
+            Some((name, entry)) => {
+                let mut alarm = self.not_supported(name, word);
+                if entry.outside_scope {
+                    alarm.key = "function-outside-scope";
+                }
+                alarm
+            }
             None => {
                 let diagnostic = Diagnostic::alarm("unusable-g-code").at(self.place(word));
                 self.finish(diagnostic.with("code", quote.clone()).with("word", quote))
@@ -446,7 +459,8 @@ impl Core {
         function: &Function,
         auxiliary: &Auxiliary,
     ) -> Result<(), Alarm> {
-        let allowed = ALWAYS | AXES | function.letters | auxiliary.letters();
+        let others = self.axes.letters & function.other_axes;
+        let allowed = ALWAYS | AXES | others | function.letters | auxiliary.letters();
         let mut foreign = block.present() & !allowed;
         let is_idle =
             matches!(function.kind, Kind::Motion(_)) && !self.is_triggered(block, function, auxiliary);
@@ -477,7 +491,14 @@ impl Core {
         {
             return self.not_supported(function.name, word);
         }
-        let key = if function.is_multiple_cycle { "cycle-word-illegal" } else { "illegal-address" };
+        let is_axis = word.is_some_and(|word| self.axes.letters & Block::bit(word.address) != 0);
+        let key = if function.is_multiple_cycle {
+            "cycle-word-illegal"
+        } else if function.is_single_cycle() && is_axis {
+            "single-cycle-axis-illegal"
+        } else {
+            "illegal-address"
+        };
         self.alarm_at(key, word)
     }
 

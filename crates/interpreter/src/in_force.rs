@@ -52,7 +52,11 @@ fn names_at_power_on(parameters: &Parameters, system: CodeSystem) -> [Option<&'s
         Some("modal-macro-cancel"),
         Some("work-coordinates-1"),
         Some("cutting-mode"),
-        Some("plane-zx"),
+        match (parameters.bit("turning-plane-at-power-on"), parameters.bit("plane-yz-at-power-on")) {
+            (_, true) => Some("plane-yz"),
+            (true, false) => Some("plane-zx"),
+            (false, false) => Some("plane-xy"),
+        },
         Some("polygon-turning-off"),
     ]
 }

@@ -15,6 +15,7 @@
 //! Deliberately not here: time, pictures, checks of good practice beyond what the block itself shows.
 
 mod auxiliary;
+mod axes;
 mod block;
 mod coordinates;
 mod corner;

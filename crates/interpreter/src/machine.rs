@@ -11,6 +11,7 @@ use turnwright_units::{Displacement, Length, Position, Radius, SurfaceSpeed, Wor
 
 use crate::Environment;
 use crate::auxiliary::Waiting;
+use crate::axes::Axes;
 use crate::corner::OpenPath;
 use crate::data_list::{DataList, ToolLife};
 use crate::figure::FigureRange;
@@ -85,6 +86,8 @@ pub(crate) struct Core {
     pub(crate) dispatch: Dispatch,
     pub(crate) options: Options,
     pub(crate) zeros: Zeros,
+    /// Axes beyond X and Z.
+    pub(crate) axes: Axes,
     pub(crate) offsets: OffsetTables,
     pub(crate) modal: Modal,
     pub(crate) text: Text,
@@ -165,6 +168,10 @@ impl Interpreter {
         let settings = Settings::new(&control.parameters, always, control.limits.number_digits);
         let dispatch = Dispatch::new(&control);
         let zeros = Zeros::new(&control, setup)?;
+        let machine = setup.machine()?;
+        let mut axes =
+            Axes::new(machine.axes, machine.live_tool_rpm_max.is_some(), dispatch.has_incremental_words);
+        axes.plane = settings.plane_at_power_on;
         let offsets = OffsetTables::new(setup)?;
         let bit = |name| control.parameters.bit(name);
         let modal = Modal {
@@ -197,6 +204,7 @@ impl Interpreter {
             dispatch,
             options,
             zeros,
+            axes,
             offsets,
             tip: modal.position,
             untaken: None,

@@ -4,6 +4,7 @@ use turnwright_canon::{PathMode, SpindleState};
 use turnwright_control::Parameters;
 use turnwright_units::{LeastIncrement, Length, Position, Radius, Rpm, SurfaceSpeed, WorkTip};
 
+use crate::axes::Plane;
 use crate::functions::FunctionId;
 use crate::in_force::InForce;
 use crate::offsets::{OffsetInForce, OffsetSettings};
@@ -84,6 +85,11 @@ pub(crate) struct Settings {
     pub(crate) is_calculator: bool,
     pub(crate) cycle_words_in_mm: bool,
     pub(crate) linear_rapid: bool,
+    pub(crate) plane_at_power_on: Plane,
+    pub(crate) polar_linear_axis: u32,
+    pub(crate) polar_rotary_axis: u32,
+    pub(crate) polar_feed_max: Length,
+    pub(crate) polar_automatic_override: bool,
     pub(crate) feed_per_rev_fine: bool,
     pub(crate) feed_per_min_fine: bool,
     pub(crate) arc_tolerance_mm: f64,
@@ -176,6 +182,15 @@ impl Settings {
             is_calculator: always_calculator || bit("decimal-point-input"),
             cycle_words_in_mm: bit("cycle-words-in-millimetres"),
             linear_rapid: bit("linear-rapid"),
+            plane_at_power_on: match (bit("turning-plane-at-power-on"), bit("plane-yz-at-power-on")) {
+                (_, true) => Plane::Yz,
+                (true, false) => Plane::Zx,
+                (false, false) => Plane::Xy,
+            },
+            polar_linear_axis: count("polar-linear-axis"),
+            polar_rotary_axis: count("polar-rotary-axis"),
+            polar_feed_max: mm("polar-feed-maximum"),
+            polar_automatic_override: bit("polar-automatic-override"),
             feed_per_rev_fine: bit("feed-per-rev-fine"),
             feed_per_min_fine: bit("feed-per-min-fine"),
             arc_tolerance_mm: parameters.value("arc-tolerance"),

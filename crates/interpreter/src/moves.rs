@@ -61,6 +61,15 @@ impl CycleMoves {
     }
 }
 
+/// A move that goes somewhere although X and Z end where they were: an arc, or one of another axis.
+fn is_move_of_its_own(action: &Action) -> bool {
+    match action {
+        Action::Rapid { others, .. } | Action::Feed { shape: Shape::Line, others, .. } => others.is_some(),
+        Action::Feed { .. } => true,
+        _ => false,
+    }
+}
+
 impl Core {
     pub(crate) fn is_capturing(&self) -> bool {
         self.capture.is_some()
@@ -130,7 +139,7 @@ impl Core {
         if self.untaken.is_some() {
             return self.emit_move_short(to, action);
         }
-        let goes = to != self.tip || matches!(action, Action::Feed { shape: Shape::Arc { .. }, .. });
+        let goes = to != self.tip || is_move_of_its_own(&action);
         self.tip = to;
         if goes {
             let origin = self.origin();

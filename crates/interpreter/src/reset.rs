@@ -1,7 +1,7 @@
 //! Reset, the end of a program, and the start after it.
 //!
-//! The reset key and M02, M30 leave the same state behind: nose compensation, modal macro calls and polar
-//! interpolation are cancelled; all other modes go back to those of power-on, or stay where the parameter says
+//! The reset key and M02, M30 leave the same state behind: nose compensation, modal macro calls, polar
+//! and cylindrical interpolation and polygon turning are cancelled; all other modes go back to those of power-on, or stay where the parameter says
 //! so. Inches and millimetres never change, S stays as a number, and F goes with the modes. The first work
 //! system is selected with the modes or by a parameter of its own. The spindle is taken to stand afterwards: that
 //! is the machine's own logic, and nearly every machine does it.
@@ -59,6 +59,7 @@ impl Core {
     /// The state of modes after a reset.
     pub(crate) fn reset_modes(&mut self) {
         let clears = self.settings.clear_modes_at_reset;
+        self.reset_axes(clears);
         for group in 1..GROUPS {
             let is_cleared = clears && group != UNITS && group != WORK_COORDINATES;
             if is_cleared || ALWAYS_PUT_BACK.contains(&group) {
@@ -148,6 +149,7 @@ impl Interpreter {
     pub fn start_again(&mut self) {
         self.alarm = None;
         self.core.is_over = false;
+        self.core.tell_axes();
         if std::mem::take(&mut self.core.has_untold_place) {
             self.core.emit(Action::Relocate { to: self.core.tip, others: None });
         }

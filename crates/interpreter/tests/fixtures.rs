@@ -1,7 +1,8 @@
 //! The manual as a test: every Markdown file in `fixtures/interpreter` is a chapter, every `nc` block in it a
 //! program, and the block after it what comes out.
 //!
-//! A block opened with `nc` takes words: a control (`fanuc-0i-tf`), parameters (`3401#0=1`), `skip=1`. A block
+//! A block opened with `nc` takes words: a control (`fanuc-0i-tf`), parameters (`3401#0=1`), `skip=1`,
+//! `machine=turn-mill`. A block
 //! `setup` before it is its setup file. The
 //! following block is `listing` (commands), `diagnostics` (alarms and warnings), or both one after the other; a
 //! program without a `diagnostics` block must have no alarm. `TURNWRIGHT_BLESS=1 cargo test -p
@@ -109,6 +110,7 @@ fn conditions<'a>(words: impl Iterator<Item = &'a str>) -> Conditions {
             Some(("skip", switches)) => {
                 conditions.skips = switches.split(',').filter_map(|switch| switch.parse().ok()).collect();
             }
+            Some(("machine", name)) => conditions.machine = Some(name.to_string()),
             Some(("restarts", count)) => conditions.restarts = count.parse().expect("a number"),
             Some((number, value)) => conditions = conditions.with(number, value),
             None => conditions.control = word.to_string(),

@@ -34,9 +34,7 @@ impl AxisPlaces {
     /// New meaning of the coordinates; the virtual axis begins where the next move or the rotary axis says.
     pub(crate) fn interpolate(&mut self, interpolation: Interpolation) {
         self.v = match interpolation {
-            Interpolation::Cylindrical { radius } => {
-                Length::from_nm((radius.to_mm() * self.c.to_radians() * 1e6).round() as i64)
-            }
+            Interpolation::Cylindrical { radius } => Interpolation::unrolled(radius, self.c),
             Interpolation::Normal | Interpolation::Polar { .. } => Length::ZERO,
         };
     }

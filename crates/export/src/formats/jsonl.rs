@@ -1,7 +1,12 @@
 //! The trace: one JSON object a line, one line a command. The format is a promise to users' scripts.
 //!
 //! In: commands in order of execution. Out: bytes appended to a buffer that the caller empties.
-//! Lengths are millimetres, X values and arc centres in X are diameters. Fields stand in a fixed order and
+//! Lengths are millimetres, X values and arc centres in X are diameters. Of the axes beyond X and Z a move has only
+//! those that it takes along: `y` in millimetres, `c` and `b` in degrees that count on over full turns, and `v`, the
+//! place on the virtual axis of polar or cylindrical interpolation (a line of `op` `interpolation` says which). Arcs
+//! in a plane with `y` or `v` name it: `face` (X and the side axis), `flank` or `wall` (Z and the side axis, seen
+//! from either side), with the centre as `cx` or `cz`, and `cs`. `coupling` is another rotation in step with the
+//! spindle; 0 to 0 ends it. Fields stand in a fixed order and
 //! numbers carry no trailing zeros, so that equal runs give equal bytes. Writing a command allocates nothing
 //! but room in the buffer.
 
@@ -60,7 +65,7 @@ pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
             }
         }
         Action::Feed { to, shape, feed, others } => {
-            write_feed(out, *to, shape, *feed, decimals);
+            write_feed(out, *to, shape, *feed, others.as_deref(), decimals);
             if let Some(others) = others {
                 write_others(out, others, decimals);
             }
@@ -149,7 +154,14 @@ pub fn write_alarm(out: &mut Vec<u8>, alarm: &TraceAlarm<'_>) {
     write_origin(out, &origin);
 }
 
-fn write_feed(out: &mut Vec<u8>, to: Position<WorkTip>, shape: &Shape, feed: Feed, decimals: u8) {
+fn write_feed(
+    out: &mut Vec<u8>,
+    to: Position<WorkTip>,
+    shape: &Shape,
+    feed: Feed,
+    others: Option<&OtherAxes>,
+    decimals: u8,
+) {
     out.extend_from_slice(br#"{"op":"feed""#);
     write_end_point(out, to, decimals);
     match shape {
@@ -179,6 +191,10 @@ fn write_feed(out: &mut Vec<u8>, to: Position<WorkTip>, shape: &Shape, feed: Fee
                 SidePlane::Flank | SidePlane::Wall => write_length(out, br#","cz":"#, centre.along, decimals),
             }
             write_length(out, br#","cs":"#, centre.side, decimals);
+            let end = plane.point(to, others.and_then(OtherAxes::side).unwrap_or_default());
+            let mm = (end.along - centre.along).to_mm().hypot((end.side - centre.side).to_mm());
+            let radius = Length::from_mm_rounded(mm, LeastIncrement::METRIC_C).unwrap_or(Length::ZERO);
+            write_length(out, br#","r":"#, radius, decimals);
         }
     }
     write_length(out, br#","f":"#, feed.length(), FINE_DECIMALS);
@@ -347,6 +363,34 @@ mod tests {
 
     fn at_line_seven(action: Action) -> String {
         line_of(action, Origin::line(7))
+    }
+
+    #[test]
+    fn other_axes_stand_behind_the_move_that_takes_them_along() {
+        let others = OtherAxes {
+            c: Some(Angle::from_millidegrees(90_500)),
+            v: Some(Length::from_mm(20)),
+            ..OtherAxes::default()
+        };
+        let to = Position::new(Radius(Length::ZERO), Length::from_mm(1));
+        let rapid = Action::Rapid { to, path: RapidPath::Straight, others: Some(Box::new(others)) };
+        let line = line_of(rapid, Origin::line(3));
+        assert_eq!(line, "{\"op\":\"rapid\",\"x\":0,\"z\":1,\"v\":20,\"c\":90.5,\"line\":3,\"depth\":0}\n");
+        let shape = Shape::SideArc {
+            plane: SidePlane::Face,
+            turn: Turn::Clockwise,
+            centre: turnwright_canon::SidePoint { along: Length::from_mm(10), side: Length::ZERO },
+        };
+        let feed = Feed::PerMinute(FeedPerMinute(Length::from_mm(100)));
+        let arc = Action::Feed { to, shape, feed, others: Some(Box::new(OtherAxes { c: None, ..others })) };
+        let line = line_of(arc, Origin::line(3));
+        assert!(line.contains(r#""shape":"cw","plane":"face","cx":20,"cs":0,"r":22.361,"#), "{line}");
+        let polar = Interpolation::Polar { zero: Angle::ZERO, is_below: false };
+        let line = line_of(Action::Interpolation(polar), Origin::line(3));
+        assert!(line.starts_with(r#"{"op":"interpolation","mode":"polar","c_zero":0,"#), "{line}");
+        let ratio = turnwright_canon::SpeedRatio { spindle: 1, other: -2 };
+        let line = line_of(Action::Coupling(Some(ratio)), Origin::line(3));
+        assert!(line.starts_with(r#"{"op":"coupling","spindle":1,"other":-2,"#), "{line}");
     }
 
     #[test]

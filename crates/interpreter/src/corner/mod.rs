@@ -167,6 +167,11 @@ impl Core {
     /// A line that has words of a path, or follows an open one.
     #[cold]
     pub(crate) fn line_in_path(&mut self, block: &Block, motion: Motion) -> Result<(), Alarm> {
+        if self.axes.plane != crate::axes::Plane::Zx
+            && let Some(word) = block.words.iter().find(|word| word.comma || LETTERS.contains(&word.address))
+        {
+            return Err(self.alarm("drawing-plane-illegal", word));
+        }
         let words = self.path_words(block, Some(&motion))?;
         let element = self.line_element(block, words, motion)?;
         self.add_element(element)

@@ -32,12 +32,14 @@ pub(super) static ARC_CLOCKWISE: Function =
     Function::motion("arc-clockwise", |core, call| arc(core, call, Turn::Clockwise))
         .with_letters(b"RIKLD")
         .triggered_by(b"RIK")
+        .with_other_axes()
         .allowed_in_figure();
 
 pub(super) static ARC_COUNTER_CLOCKWISE: Function =
     Function::motion("arc-counter-clockwise", |core, call| arc(core, call, Turn::CounterClockwise))
         .with_letters(b"RIKLD")
         .triggered_by(b"RIK")
+        .with_other_axes()
         .allowed_in_figure();
 
 /// Letters of corners where they may lie between any cuts.
@@ -59,6 +61,9 @@ struct Arc<'b> {
 }
 
 fn arc(core: &mut Core, call: &mut Call<'_>, turn: Turn) -> Result<(), Alarm> {
+    if call.block.present() & core.axes.rare != 0 || core.axes.plane != crate::axes::Plane::Zx {
+        return super::plane_arc::plane_arc(core, call, turn);
+    }
     if core.corner.is_some() || call.block.has_comma || call.block.present() & CORNERS != 0 {
         core.check_path_words(call.block)?;
     }
@@ -156,7 +161,7 @@ impl Core {
         }
     }
 
-    fn arc_alarm(&self, word: &Word, error_mm: f64) -> Alarm {
+    pub(super) fn arc_alarm(&self, word: &Word, error_mm: f64) -> Alarm {
         let shown = |mm: f64| Length::from_mm_rounded(mm, LeastIncrement::METRIC_C).unwrap_or(Length::ZERO);
         let quote = self.quote(word.start, word.end);
         let diagnostic = Diagnostic::alarm("arc-radius-tolerance").at(self.place(word)).with("word", quote);

@@ -13,8 +13,10 @@ use crate::block::Call;
 use crate::machine::Core;
 use crate::report::Alarm;
 
-pub(super) static COORDINATE_SETTING: Function =
-    Function::one_shot("coordinate-setting", coordinate_setting).with_speed_limit().setting_data();
+pub(super) static COORDINATE_SETTING: Function = Function::one_shot("coordinate-setting", coordinate_setting)
+    .with_speed_limit()
+    .with_other_axes()
+    .setting_data();
 
 fn coordinate_setting(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     if let Some(word) = call.block.word(b'S') {
@@ -29,5 +31,5 @@ fn coordinate_setting(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm>
             core.zeros.preset = Displacement::new(preset.x + here.x - there.x, preset.z + here.z - there.z);
         });
     }
-    Ok(())
+    core.preset_other_axes(call.block)
 }

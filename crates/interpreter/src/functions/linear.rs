@@ -17,12 +17,16 @@ use crate::corner::Motion;
 use crate::machine::Core;
 use crate::report::Alarm;
 
-pub(super) static LINEAR: Function = Function::motion("linear", linear).drawing_lines().allowed_in_figure();
+pub(super) static LINEAR: Function =
+    Function::motion("linear", linear).drawing_lines().with_other_axes().allowed_in_figure();
 
 /// Letters that may make the line part of a path.
 pub(super) const PATH_LETTERS: u32 = super::letters(crate::corner::LETTERS);
 
 fn linear(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
+    if call.block.present() & core.axes.rare != 0 {
+        return core.linear_with_axes(call);
+    }
     let Some(feed) = core.feed_in_force() else {
         return Err(core.alarm_at("feed-missing", call.word));
     };

@@ -11,12 +11,16 @@ mod data_setting;
 mod dwell;
 mod finishing;
 mod groove;
+mod interpolation;
 mod linear;
 mod look_ahead;
 mod modes;
 mod multi_thread;
 mod path_mode;
 mod pattern;
+mod plane_arc;
+mod planes;
+mod polygon;
 mod rapid;
 mod reference_return;
 mod rough;
@@ -54,6 +58,8 @@ pub(crate) struct Function {
     pub(crate) letters: u32,
     /// Letters that make a motion run when its code is in force from an earlier block.
     pub(crate) trigger: u32,
+    /// Which letters of axes beyond X and Z it takes: all or none.
+    pub(crate) other_axes: u32,
     /// May stand in the figure of a cycle.
     pub(crate) in_figure: bool,
     /// Its F is a lead.
@@ -92,6 +98,7 @@ impl Function {
             kind,
             letters: 0,
             trigger: 0,
+            other_axes: 0,
             in_figure: false,
             takes_lead: false,
             takes_speed_limit: false,
@@ -127,6 +134,11 @@ impl Function {
 
     pub(crate) const fn triggered_by(mut self, text: &[u8]) -> Self {
         self.trigger |= letters(text);
+        self
+    }
+
+    pub(crate) const fn with_other_axes(mut self) -> Self {
+        self.other_axes = u32::MAX;
         self
     }
 
@@ -171,6 +183,11 @@ impl Function {
         self
     }
 
+    /// A turning, facing or thread cycle of one block.
+    pub(crate) fn is_single_cycle(&self) -> bool {
+        matches!(self.name, "turning-cycle" | "thread-cycle" | "facing-cycle")
+    }
+
     #[inline]
     pub(crate) fn run(&self, core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
         let (Kind::Mode(run) | Kind::Motion(run) | Kind::OneShot(run)) = self.kind;
@@ -201,7 +218,16 @@ static ALL: &[&Function] = &[
     &modes::FEED_PER_REVOLUTION,
     &modes::ABSOLUTE,
     &modes::INCREMENTAL,
-    &modes::PLANE_ZX,
+    &planes::PLANE_XY,
+    &planes::PLANE_ZX,
+    &planes::PLANE_YZ,
+    &interpolation::POLAR_ON,
+    &interpolation::POLAR_OFF,
+    &interpolation::POLAR_WORDS_ON,
+    &interpolation::POLAR_WORDS_OFF,
+    &interpolation::CYLINDRICAL,
+    &polygon::POLYGON_ON,
+    &polygon::POLYGON_OFF,
     &modes::HOLE_CYCLE_OFF,
     &path_mode::EXACT_STOP,
     &path_mode::EXACT_STOP_MODE,

@@ -1,5 +1,5 @@
 //! Functions that only change a mode: units (G20, G21), nose compensation off (G40), work coordinates (G54 to
-//! G59), speed mode (G96, G97), feed mode (G98, G99), absolute and incremental (systems B and C), plane (G18).
+//! G59), speed mode (G96, G97), feed mode (G98, G99), absolute and incremental (systems B and C).
 //!
 //! Each acts before anything else in its block. A change of feed mode does not convert the F in force; a change
 //! back to constant spindle speed without S keeps the speed that the spindle has at that diameter.
@@ -17,8 +17,6 @@ pub(super) static METRIC: Function = Function::mode("metric", |core, _| units(co
 
 pub(super) static NOSE_COMPENSATION_OFF: Function =
     Function::mode("nose-compensation-off", |_, _| Ok(())).allowed_in_figure();
-
-pub(super) static PLANE_ZX: Function = Function::mode("plane-zx", |_, _| Ok(()));
 
 // These cancel modes that nothing in this version can switch on: they are in force already.
 pub(super) static HOLE_CYCLE_OFF: Function = Function::mode("hole-cycle-off", |_, _| Ok(()));

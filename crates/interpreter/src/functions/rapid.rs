@@ -16,9 +16,13 @@ use crate::corner::Motion;
 use crate::machine::Core;
 use crate::report::Alarm;
 
-pub(super) static RAPID: Function = Function::motion("rapid", rapid).drawing_lines().allowed_in_figure();
+pub(super) static RAPID: Function =
+    Function::motion("rapid", rapid).drawing_lines().with_other_axes().allowed_in_figure();
 
 fn rapid(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
+    if call.block.present() & core.axes.rare != 0 {
+        return core.rapid_with_axes(call);
+    }
     let path = core.rapid_path();
     if core.corner.is_some() || call.block.present() & PATH_LETTERS != 0 || call.block.has_comma {
         return core.line_in_path(call.block, Motion::Rapid(path));

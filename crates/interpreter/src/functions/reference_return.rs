@@ -17,11 +17,12 @@ use crate::block::Call;
 use crate::machine::Core;
 use crate::report::Alarm;
 
-pub(super) static REFERENCE_RETURN: Function = Function::one_shot("reference-return", reference_return);
+pub(super) static REFERENCE_RETURN: Function =
+    Function::one_shot("reference-return", reference_return).with_other_axes();
 
 fn reference_return(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     let present = call.block.present();
-    if present & super::AXES == 0 {
+    if present & (super::AXES | core.axes.letters) == 0 {
         return Ok(());
     }
     let by_way_of = core.target(call.block)?;
@@ -36,9 +37,10 @@ fn reference_return(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
         core.say(diagnostic.at(place));
     }
     // Both legs are non-linear whatever the parameter for positioning says.
-    for place in [by_way_of, to] {
+    let (others_by_way_of, others_home) = core.other_axes_home(call.block)?;
+    for (place, others) in [(by_way_of, others_by_way_of), (to, others_home)] {
         core.modal.position = place;
-        core.emit_move(place, Action::Rapid { to: place, path: RapidPath::EachAxis, others: None })?;
+        core.emit_move(place, Action::Rapid { to: place, path: RapidPath::EachAxis, others })?;
     }
     core.leave_out_movement(present & letters(b"XU") != 0, present & letters(b"ZW") != 0);
     Ok(())

@@ -43,6 +43,7 @@ pub struct Conditions {
     pub parameters: Vec<(String, String)>,
     pub skips: Vec<u8>,
     pub setup: String,
+    pub machine: Option<String>,
     /// Cycle starts after the end of the program.
     pub restarts: u32,
 }
@@ -66,7 +67,10 @@ pub fn run(text: &[u8], conditions: &Conditions) -> Run {
 
 /// As [`run`], on a control whose policies the caller has changed.
 pub fn run_on(mut control: Control, text: &[u8], conditions: &Conditions) -> Run {
-    let setup = Setup::parse(&conditions.setup).unwrap_or_else(|fault| panic!("{fault:?}"));
+    let mut setup = Setup::parse(&conditions.setup).unwrap_or_else(|fault| panic!("{fault:?}"));
+    if conditions.machine.is_some() {
+        setup.machine.clone_from(&conditions.machine);
+    }
     for (number, value) in setup.parameter_words().iter().chain(&conditions.parameters) {
         control.parameters.set(number, value).unwrap_or_else(|fault| panic!("{fault:?}"));
     }
