@@ -64,6 +64,7 @@ pub(crate) enum Command {
     Plot(Plot),
     Explain(Explain),
     Controls(Controls),
+    Data(Data),
     Completions(Completions),
     Man(Man),
 }
@@ -234,6 +235,46 @@ pub(crate) struct Controls {
     pub(crate) format: LookupFormat,
 }
 
+/// Shows offsets, work zeros and parameters, and exchanges them with the control's own text form.
+///
+/// The data is that of a setup file. --import takes texts that the control has put out into it: lines of G10, lines of
+/// parameters (N_ P_). --export writes such a text. Parameters that are not known here are kept and written again.
+#[derive(Debug, Args)]
+#[command(after_long_help = examples("data"))]
+pub(crate) struct Data {
+    /// Setup file to start from [default: an empty one]
+    #[arg(value_name = "SETUP.toml")]
+    pub(crate) setup: Option<PathBuf>,
+    /// Text of the control to take in; may be repeated
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) import: Vec<PathBuf>,
+    /// Data to write as the control's text
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub(crate) export: Option<Export>,
+    /// Where to write the setup file, or with --export the text; - for standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Control whose data it is [default: the setup file's, else the usual one]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) control: Option<String>,
+    /// Form of what is shown
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub(crate) format: LookupFormat,
+}
+
+/// Kinds of stored data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Export {
+    /// Tool offsets
+    Offsets,
+    /// Work zeros and shifts
+    Work,
+    /// Parameters
+    Parameters,
+    /// All of these, one record each
+    All,
+}
+
 /// Prints a completion script for a shell.
 #[derive(Debug, Args)]
 #[command(after_long_help = examples("completions"))]
@@ -253,8 +294,8 @@ pub(crate) struct Man {
 }
 
 /// The commands that have a page.
-const COMMAND_NAMES: [&str; 8] =
-    ["run", "check", "trace", "plot", "explain", "controls", "completions", "man"];
+const COMMAND_NAMES: [&str; 9] =
+    ["run", "check", "trace", "plot", "explain", "controls", "data", "completions", "man"];
 
 /// A text of the help, in the language of the environment: the options are not known yet.
 fn text(key: &'static str) -> &'static str {

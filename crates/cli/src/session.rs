@@ -96,12 +96,8 @@ impl Session {
             }
         };
         let file = setup_path.as_ref().map_or(String::new(), |path| path.display().to_string());
-        for (number, value) in setup.parameter_words() {
-            set_parameter(&mut control, &number, &value, &file, speech)?;
-        }
-        for (number, value) in &options.parameters {
-            set_parameter(&mut control, number, value, "", speech)?;
-        }
+        set_parameters(&mut control, &setup.parameter_words(), &file, speech)?;
+        set_parameters(&mut control, &options.parameters, "", speech)?;
         Ok(Self { control, reason, setup, setup_path, warning })
     }
 
@@ -128,6 +124,16 @@ fn hinted(finding: Finding, nearest: Option<&str>, speech: Speech) -> Finding {
         Some(name) => finding.with_hint(speech.fill("did-you-mean", &[("name", name)])),
         None => finding,
     }
+}
+
+/// Sets parameters that `file` states, or the command line when that is empty.
+pub(crate) fn set_parameters(
+    control: &mut Control,
+    values: &[(String, String)],
+    file: &str,
+    speech: Speech,
+) -> Result<(), Finding> {
+    values.iter().try_for_each(|(number, value)| set_parameter(control, number, value, file, speech))
 }
 
 fn set_parameter(
@@ -179,30 +185,35 @@ fn find_setup(
         }
         (None, None) => return Ok((Setup::default(), None)),
     };
+    read_setup(&path, speech).map(|setup| (setup, Some(path)))
+}
+
+/// Reads a setup file.
+pub(crate) fn read_setup(path: &Path, speech: Speech) -> Result<Setup, Finding> {
     let name = path.display().to_string();
     let unusable = |value: String| {
         let diagnostic = Diagnostic::error("setup-invalid").with("name", name.as_str()).with("value", value);
         Finding::new(name.as_str(), diagnostic).failed()
     };
-    let content = match fs::metadata(&path) {
+    let content = match fs::metadata(path) {
         Ok(metadata) if metadata.len() > SETUP_BYTES_MAX => {
             return Err(unusable(format!("> {} MiB", SETUP_BYTES_MAX >> 20)));
         }
-        Ok(_) => fs::read_to_string(&path).map_err(|error| unusable(speech.system(&error)))?,
+        Ok(_) => fs::read_to_string(path).map_err(|error| unusable(speech.system(&error)))?,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             let diagnostic = Diagnostic::error("setup-not-found").with("name", name.as_str());
             return Err(Finding::new(name, diagnostic).failed());
         }
         Err(error) => return Err(unusable(speech.system(&error))),
     };
-    let setup = Setup::parse(&content).map_err(|fault| {
+    Setup::parse(&content).map_err(|fault| {
         let text = ProgramText::in_memory(name.as_str(), content.as_bytes());
-        invalid_setup(&path, &fault).located(&text)
-    })?;
-    Ok((setup, Some(path)))
+        invalid_setup(path, &fault).located(&text)
+    })
 }
 
-fn invalid_setup(path: &Path, fault: &SetupFault) -> Finding {
+/// A setup file that makes no sense.
+pub(crate) fn invalid_setup(path: &Path, fault: &SetupFault) -> Finding {
     let name = path.display().to_string();
     let diagnostic =
         Diagnostic::error("setup-invalid").with("name", name.as_str()).with("value", fault.message.as_str());

@@ -8,6 +8,7 @@
 
 mod functions;
 mod messages;
+mod parameter_text;
 mod parameters;
 pub mod policy;
 mod setup;
@@ -18,6 +19,9 @@ use serde::Deserialize;
 
 pub use functions::{CodeSystem, FunctionEntry, Functions, Group, parse_code};
 pub use messages::{Language, MessageText, Messages};
+pub use parameter_text::{
+    ParameterExport, ParameterImport, ParameterLine, export_parameters, import_parameters,
+};
 pub use parameters::{Axis, Parameter, ParameterFault, Parameters, UnderNumber};
 pub use setup::{
     AxisPair, LinearAxis, Machine, MachineAxes, Offset, OffsetRow, RotaryAxis, Setup, SetupFault,

@@ -55,6 +55,11 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// Whether a value without a point counts least increments: lengths do, angles are whole degrees.
+    pub fn counts_increments(&self) -> bool {
+        self.unit == "mm"
+    }
+
     /// Its name in a language.
     pub fn name(&self, language: Language) -> &str {
         match language {
@@ -103,6 +108,17 @@ pub enum ParameterFault {
         /// What is expected.
         expected: &'static str,
     },
+}
+
+impl ParameterFault {
+    /// What would have been right.
+    pub const fn expected(&self) -> &'static str {
+        match self {
+            Self::Unknown { .. } => "a number that exists",
+            Self::Axis { .. } => "an axis",
+            Self::Value { expected, .. } => expected,
+        }
+    }
 }
 
 /// What a control has under one number: a value, or some of the eight bits of a word.

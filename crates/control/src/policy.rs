@@ -170,6 +170,13 @@ policies! {
         /// No word of data setting.
         Foreign,
     }
+    /// The form of a punched parameter text.
+    parameter_text: ParameterText {
+        /// `N1320 A1P99999999`: lengths in least increments.
+        Short,
+        /// `N01320 Q1 A1P99999.999`: marked as parameters, the path named, lengths with a point.
+        Long,
+    }
     /// An arc whose end point does not lie on the circle given by its centre.
     arc_end_error: ArcEndError {
         /// An arc with the start radius, then a straight line along one axis to the end point.

@@ -183,6 +183,10 @@ pub struct Setup {
     /// that at X0 Z0 they are true machine coordinates.
     #[serde(default)]
     pub work: BTreeMap<String, AxisPair>,
+    /// Parameters of a punched text that are not known here, or only in part, by number: `"1023" = "A1P1 A2P2"`.
+    /// They change nothing and are written out again.
+    #[serde(default)]
+    pub kept: BTreeMap<String, String>,
 }
 
 /// What is wrong with a setup file, with its line when known.
@@ -202,6 +206,44 @@ fn typed(value: &toml::Value) -> String {
         toml::Value::Boolean(value) => u8::from(*value).to_string(),
         toml::Value::String(value) => value.clone(),
         other => other.type_str().to_string(),
+    }
+}
+
+/// A string of TOML.
+fn quoted(text: &str) -> String {
+    let mut out = String::from('"');
+    for character in text.chars() {
+        match character {
+            '"' | '\\' => out.extend(['\\', character]),
+            character if character.is_control() => out.push_str(&format!("\\u{:04X}", u32::from(character))),
+            character => out.push(character),
+        }
+    }
+    out.push('"');
+    out
+}
+
+/// A key of TOML: bare where that reads as one key.
+fn key(text: &str) -> String {
+    let is_bare = !text.is_empty()
+        && text.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-'));
+    if is_bare { text.to_string() } else { quoted(text) }
+}
+
+/// A value of TOML on one line.
+fn inline(value: &toml::Value) -> String {
+    match value {
+        toml::Value::String(text) => quoted(text),
+        toml::Value::Table(table) => {
+            let entries: Vec<String> =
+                table.iter().map(|(key, value)| format!("{} = {}", self::key(key), inline(value))).collect();
+            format!("{{ {} }}", entries.join(", "))
+        }
+        toml::Value::Array(values) => {
+            let values: Vec<String> = values.iter().map(inline).collect();
+            format!("[{}]", values.join(", "))
+        }
+        other => typed(other),
     }
 }
 
@@ -239,6 +281,70 @@ impl Setup {
             }
         }
         words
+    }
+
+    /// States a parameter by its number, with bit and axis behind it: `3401#0`, `1221.X`.
+    pub fn set_parameter(&mut self, address: &str, value: f64) {
+        let value = if value.fract() == 0.0 && value.abs() < 1e15 {
+            toml::Value::Integer(value as i64)
+        } else {
+            toml::Value::Float(value)
+        };
+        match address.split_once('.') {
+            None => {
+                self.parameters.insert(address.to_string(), value);
+            }
+            Some((number, axis)) => {
+                let axes = self.parameters.entry(number.to_string());
+                let axes = axes.or_insert_with(|| toml::Value::Table(toml::Table::new()));
+                if !axes.is_table() {
+                    *axes = toml::Value::Table(toml::Table::new());
+                }
+                if let toml::Value::Table(axes) = axes {
+                    axes.insert(axis.to_string(), value);
+                }
+            }
+        }
+    }
+
+    /// The setup as a file; comments of the file it was read from are not in it.
+    pub fn to_toml(&self) -> String {
+        let mut out = String::new();
+        for (key, value) in [("control", &self.control), ("machine", &self.machine)] {
+            if let Some(value) = value {
+                out.push_str(&format!("{key} = {}\n", quoted(value)));
+            }
+        }
+        let mut section = |name: &str, lines: Vec<String>| {
+            if !lines.is_empty() {
+                out.push_str(if out.is_empty() { "" } else { "\n" });
+                out.push_str(&format!("[{name}]\n{}\n", lines.join("\n")));
+            }
+        };
+        let value_line =
+            |(key, value): (&String, &toml::Value)| format!("{} = {}", self::key(key), inline(value));
+        section("parameters", self.parameters.iter().map(value_line).collect());
+        section("rates", self.rates.iter().map(value_line).collect());
+        let kept = self.kept.iter().map(|(key, value)| format!("{} = {}", self::key(key), quoted(value)));
+        section("kept", kept.collect());
+        let work = self.work.iter();
+        let work = work.map(|(name, pair)| format!("{} = {{ x = {}, z = {} }}", key(name), pair.x, pair.z));
+        section("work", work.collect());
+        let mut offsets: Vec<_> = self.offsets.iter().collect();
+        offsets.sort_by_key(|(name, _)| name.parse::<u32>().unwrap_or(u32::MAX));
+        for (name, offset) in offsets {
+            let row = |row: &OffsetRow| {
+                let y = if row.y == 0.0 { String::new() } else { format!("y = {}, ", row.y) };
+                format!("{{ x = {}, {y}z = {}, r = {} }}", row.x, row.z, row.r)
+            };
+            let lines = vec![
+                format!("geometry = {}", row(&offset.geometry)),
+                format!("wear = {}", row(&offset.wear)),
+                format!("tip = {}", offset.tip),
+            ];
+            section(&format!("offsets.{}", key(name)), lines);
+        }
+        out
     }
 
     /// The machine with its overrides.
@@ -315,6 +421,22 @@ mod tests {
         let words = setup.parameter_words();
         let words: Vec<_> = words.iter().map(|(number, value)| format!("{number}={value}")).collect();
         assert_eq!(words, ["1221.X=-1.5", "1221.Z=2", "1241.Z=3", "5130=10"]);
+    }
+
+    #[test]
+    fn a_setup_that_is_written_reads_back() {
+        let text = "control = \"a\\\"b\"\nmachine = \"m\"\n[parameters]\n\"3401#0\" = 1\n1221 = { X = -0.5 }\n051 = \"7\"\n\
+                    [rates]\nrapid_x_mm_per_min = 6000\naxes = { c = { number = 3 } }\nlist = [1, 2]\n\
+                    [kept]\n1023 = \"A1P1 A2P2\"\n[work]\n\"G54.1 P2\" = { z = -1.25 }\n\
+                    [offsets.12]\ngeometry = { x = -10.001, y = 2 }\nwear = { r = 0.4 }\ntip = 3\n[offsets.2]\n";
+        let mut setup = Setup::parse(text).expect("a setup");
+        assert_eq!(Setup::parse(&setup.to_toml()), Ok(setup.clone()), "{}", setup.to_toml());
+        setup.set_parameter("1221.Z", 3.0);
+        setup.set_parameter("5130", 12.0);
+        let words = Setup::parse(&setup.to_toml()).expect("a setup").parameter_words();
+        assert!(words.contains(&("1221.Z".to_string(), "3".to_string())), "{words:?}");
+        assert!(words.contains(&("1221.X".to_string(), "-0.5".to_string())), "{words:?}");
+        assert_eq!(Setup::default().to_toml(), "");
     }
 
     #[test]

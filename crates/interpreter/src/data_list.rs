@@ -172,7 +172,7 @@ impl Core {
         value: &Word,
     ) -> Result<(), Alarm> {
         let digits = self.whole_signed(value)?;
-        let amount = if matches!(parameter.unit.as_str(), "mm" | "deg") {
+        let amount = if parameter.counts_increments() {
             // Exact: both factors are whole.
             (digits * self.settings.metric_increment.nm()) as f64 / 1e6
         } else {

@@ -31,6 +31,7 @@ mod moves;
 mod offsets;
 mod parts;
 mod plane;
+mod punch;
 mod report;
 mod reset;
 mod spindle;
@@ -43,6 +44,7 @@ pub use functions::implemented_functions;
 pub use in_force::GROUPS;
 pub use machine::{Interpreter, Options, Step, SyncReason};
 pub use parts::Parts;
+pub use punch::{DataFault, DataImport, export_offsets, export_work_zeros, import_data};
 pub use text::LINE_BYTES_MAX;
 use turnwright_diagnostics::SourceId;
 

@@ -115,6 +115,23 @@ impl OffsetTables {
         Ok(tables)
     }
 
+    /// Number of the last row that was written.
+    pub(crate) fn last_number(&self) -> u32 {
+        self.rows.len().saturating_sub(1) as u32
+    }
+
+    /// X, Y, Z and nose radius of a row, as the screen shows them.
+    pub(crate) fn values(&self, table: OffsetTable, number: u32) -> [Length; 4] {
+        let row = self.row(number);
+        let cells = if table == OffsetTable::Geometry { row.geometry } else { row.wear };
+        cells.0
+    }
+
+    /// Tip direction of a row.
+    pub(crate) fn tip(&self, number: u32) -> u8 {
+        self.row(number).tip
+    }
+
     fn row(&self, number: u32) -> &Row {
         self.rows.get(number as usize).unwrap_or(&Row::EMPTY)
     }

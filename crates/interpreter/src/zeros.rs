@@ -36,6 +36,25 @@ impl WorkZero {
         Self::System(STANDARD_SYSTEMS + number - 1)
     }
 
+    /// Its name in a setup file.
+    pub(crate) fn name(self) -> String {
+        match self {
+            Self::External => "EXT".to_string(),
+            Self::WorkpieceShift => "SHIFT".to_string(),
+            Self::System(system) if system < STANDARD_SYSTEMS => format!("G{}", 54 + system),
+            Self::System(system) => format!("G54.1 P{}", system - STANDARD_SYSTEMS + 1),
+        }
+    }
+
+    /// The parameter that holds it too.
+    pub(crate) fn parameter(self) -> Option<&'static str> {
+        match self {
+            Self::External => Some("work-zero-external"),
+            Self::WorkpieceShift => None,
+            Self::System(system) => WORK_PARAMETERS.get(system).copied(),
+        }
+    }
+
     /// The zero that a setup file means by `G54`, `G54.1 P3`, `EXT` or `SHIFT`.
     fn named(name: &str) -> Option<Self> {
         let name = name.to_ascii_uppercase().replace(' ', "");
@@ -199,6 +218,11 @@ impl Zeros {
             Axis::X => stored.x.to_diameter().0,
             Axis::Z => stored.z,
         })
+    }
+
+    /// Both values, X as a diameter; nothing for a system that the control does not have.
+    pub(crate) fn pair(&self, zero: WorkZero) -> [Length; 2] {
+        Axis::ALL.map(|axis| self.get(zero, axis).unwrap_or(Length::ZERO))
     }
 
     /// Stores a value, X as a diameter; `None` when the control has no such system. The place of the tool is not

@@ -2,6 +2,7 @@
 
 mod check;
 mod controls;
+mod data;
 mod explain;
 mod generate;
 mod plot;
@@ -21,6 +22,7 @@ pub(crate) fn run(arguments: &Arguments, printer: &Printer) -> Result<Status, Fa
         Command::Plot(options) => plot::run(options, printer),
         Command::Explain(options) => explain::run(options, printer),
         Command::Controls(options) => controls::run(options, printer),
+        Command::Data(options) => data::run(options, printer),
         Command::Completions(options) => generate::completions(options),
         Command::Man(options) => generate::man(options),
     }
@@ -35,6 +37,7 @@ pub(crate) fn format(arguments: &Arguments) -> Format {
         Command::Plot(options) => options.format,
         Command::Explain(options) => lookup(options.format),
         Command::Controls(options) => lookup(options.format),
+        Command::Data(options) => lookup(options.format),
         Command::Trace(_) | Command::Completions(_) | Command::Man(_) => Format::Human,
     }
 }
