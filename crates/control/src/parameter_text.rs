@@ -267,11 +267,10 @@ pub fn export_parameters(control: &Control, setup: &Setup) -> ParameterExport {
                 line.put(place, axis.is_some(), value);
             }
             (None, Ok(bit @ 0..=7)) => {
-                if !lines
-                    .get_mut(&word)
-                    .is_some_and(|line| line.put_bit(axis.map(|_| &place), bit, value != "0"))
-                    && !export.left_out.contains(&word)
-                {
+                let axis = axis.map(|_| &place);
+                let line = lines.get_mut(&word);
+                let is_put = line.is_some_and(|line| line.put_bit(axis, bit, value != "0"));
+                if !is_put && !export.left_out.contains(&word) {
                     export.left_out.push(word);
                 }
             }
