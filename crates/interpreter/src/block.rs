@@ -496,6 +496,8 @@ impl Core {
             "cycle-word-illegal"
         } else if function.is_single_cycle() && is_axis {
             "single-cycle-axis-illegal"
+        } else if function.takes_lead && word.is_some_and(|word| self.breaks_corners(word)) {
+            "corner-in-thread"
         } else {
             "illegal-address"
         };

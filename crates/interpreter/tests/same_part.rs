@@ -121,6 +121,20 @@ fn the_finishing_cycle_is_the_figure_itself() {
 }
 
 #[test]
+fn drawing_dimensions_are_the_points_they_stand_for() {
+    let figure = |drawn: &str| {
+        format!(
+            "O1\nG98 M3 S800\nG0 X92. Z2.\nG71 U3. R0.5\nG71 P1 Q2 U0.4 W0.1 F100.\n\
+             N1 G0 X20.\nG1 Z0\n{drawn}\nX90.\nN2 Z-70.\nG70 P1 Q2\nM30\n"
+        )
+    };
+    // 135 and 170 degrees, with a chamfer of 3 between them; the last line is 20 long at 150 degrees.
+    let by_points = figure("X47.194 Z-13.597\nX52.479 Z-18.673\nX60. Z-40.\nX83.094 Z-60.");
+    let by_angles = figure(",A135. ,C3.\nX60. Z-40. ,A170.\nZ-60. ,A150.");
+    assert_eq!(moves(&by_points, &tf()), moves(&by_angles, &tf()));
+}
+
+#[test]
 fn layout_of_the_text_does_not_matter() {
     let dense = ABSOLUTE.replace(' ', "");
     let lower = ABSOLUTE.to_lowercase();

@@ -76,6 +76,14 @@ impl Core {
             && self.control.policies.corner_words == CornerWords::ChamferAndRadius
     }
 
+    /// Whether a letter breaks corners on this control.
+    pub(crate) fn breaks_corners(&self, word: &Word) -> bool {
+        match self.control.policies.corner_words {
+            CornerWords::LengthAndFillet => matches!(word.address, b'L' | b'D'),
+            CornerWords::ChamferAndRadius => matches!(word.address, b'C' | b'I' | b'K' | b'R'),
+        }
+    }
+
     /// Words behind a comma belong to lines only.
     pub(crate) fn refuse_comma_words(&self, block: &Block) -> Result<(), Alarm> {
         match block.words.iter().find(|word| word.comma) {
