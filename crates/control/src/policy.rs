@@ -227,6 +227,20 @@ policies! {
         /// Arcs too.
         AnyMotion,
     }
+    /// What increments (U, W) of the local zero do.
+    local_increments: LocalIncrements {
+        /// They add to the local shift in force. From memory of how other coordinate data take increments.
+        Add,
+        /// They are the local shift, as X and Z are.
+        Replace,
+    }
+    /// Whether the codes of the second stroke check must stand alone in their block.
+    stroke_check_block: StrokeCheckBlock {
+        /// Another word is an alarm, and so is the code while the checks are switched off.
+        Alone,
+        /// Other words are read; a warning says that the manuals ask for a block of their own.
+        Shared,
+    }
     /// What a positive workpiece shift does. From memory: a manual's example sets +1 where the position should
     /// read one more, that is, the zero goes the other way; the external offset does not.
     workpiece_shift: WorkpieceShift {

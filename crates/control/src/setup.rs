@@ -157,6 +157,20 @@ pub struct Offset {
     pub tip: u8,
 }
 
+/// How the machine stands when the program starts.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Start {
+    /// The operator has returned the axes to their reference points.
+    pub homed: bool,
+}
+
+impl Default for Start {
+    fn default() -> Self {
+        Self { homed: true }
+    }
+}
+
 /// What a setup file says.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -178,6 +192,9 @@ pub struct Setup {
     /// Tool offsets by number.
     #[serde(default)]
     pub offsets: BTreeMap<String, Offset>,
+    /// How the machine stands when the program starts.
+    #[serde(default)]
+    pub start: Start,
     /// Stored zeros, mm, X as a diameter: `G54` to `G59`, `"G54.1 P1"` and so on, the external offset `EXT` and
     /// the workpiece shift `SHIFT`. They are what the control stores, counted from the machine's `reference`: with
     /// that at X0 Z0 they are true machine coordinates.

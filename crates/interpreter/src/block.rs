@@ -55,6 +55,8 @@ struct Code {
 struct Codes {
     modes: [(FunctionId, u8); CODES_MAX],
     mode_count: usize,
+    /// Letters that modes of the block take.
+    mode_letters: u32,
     one_shot: Option<Code>,
     motion: Option<Code>,
 }
@@ -285,7 +287,8 @@ impl Core {
         }
         let motion = self.modal.motion;
         let function = codes.one_shot.map_or(motion, |one_shot| one_shot.id).get();
-        self.check_letters(block, function, &auxiliary)?;
+        let other_letters = codes.mode_letters | auxiliary.letters();
+        self.check_letters(block, function, other_letters)?;
         if self.axes.plane != Plane::Zx {
             self.refuse_cycle_plane(block, function)?;
         }
@@ -311,7 +314,7 @@ impl Core {
                 }
             }
             None => {
-                let triggered = self.is_triggered(block, function, &auxiliary)
+                let triggered = self.is_triggered(block, function, other_letters)
                     || (function.repeats && self.repeats_single_cycle(block, &auxiliary));
                 if triggered {
                     if waiting_corner && !function.in_figure {
@@ -335,11 +338,11 @@ impl Core {
         }
     }
 
-    /// Whether the words of a block make a motion in force run.
+    /// Whether the words of a block make a motion in force run; `other_letters` belong to modes and M words.
     #[inline]
-    fn is_triggered(&self, block: &Block, function: &Function, auxiliary: &Auxiliary) -> bool {
-        let letters = block.present() & (function.trigger | (self.axes.letters & function.other_axes));
-        (letters != 0 && letters & !auxiliary.letters() != 0)
+    fn is_triggered(&self, block: &Block, function: &Function, other_letters: u32) -> bool {
+        let letters = function.trigger | (self.axes.letters & function.other_axes);
+        block.present() & letters & !other_letters != 0
             || (block.has_comma && function.draws_lines && self.gives_angle(block))
     }
 
@@ -351,6 +354,9 @@ impl Core {
         let function = id.get();
         if !function.in_figure && self.is_in_figure() {
             return Err(self.refuse_in_figure(word));
+        }
+        if !function.in_rotation && self.transform.rotation.is_some() {
+            return Err(self.alarm("rotation-code-illegal", word));
         }
         let new = Code { id, code, word: place as u8 };
         match function.kind {
@@ -366,6 +372,7 @@ impl Core {
                 }
                 codes.modes[codes.mode_count] = (id, place as u8);
                 codes.mode_count += 1;
+                codes.mode_letters |= function.letters;
             }
             Kind::OneShot(_) => {
                 if let Some(first) = codes.one_shot.replace(new) {
@@ -453,20 +460,15 @@ impl Core {
 
     /// Every letter must belong to something in the block.
     #[inline]
-    fn check_letters(
-        &mut self,
-        block: &Block,
-        function: &Function,
-        auxiliary: &Auxiliary,
-    ) -> Result<(), Alarm> {
+    fn check_letters(&mut self, block: &Block, function: &Function, other_letters: u32) -> Result<(), Alarm> {
         let others = self.axes.letters & function.other_axes;
-        let allowed = ALWAYS | AXES | others | function.letters | auxiliary.letters();
+        let allowed = ALWAYS | AXES | others | function.letters | other_letters;
         let mut foreign = block.present() & !allowed;
         let is_idle =
-            matches!(function.kind, Kind::Motion(_)) && !self.is_triggered(block, function, auxiliary);
+            matches!(function.kind, Kind::Motion(_)) && !self.is_triggered(block, function, other_letters);
         if is_idle {
             // A motion that does not run takes no letters: `R5.` alone shapes nothing.
-            foreign |= block.present() & function.letters & !auxiliary.letters();
+            foreign |= block.present() & function.letters & !other_letters;
         }
         if foreign != 0 {
             return Err(self.foreign_letter(block, foreign, function));

@@ -35,8 +35,11 @@ mod punch;
 mod report;
 mod reset;
 mod spindle;
+mod strokes;
 mod text;
 mod tool;
+mod transform;
+mod watch;
 mod words;
 mod zeros;
 

@@ -16,6 +16,7 @@ use crate::corner::OpenPath;
 use crate::data_list::{DataList, ToolLife};
 use crate::figure::FigureRange;
 use crate::flow::{Frame, ProgramIndex};
+use crate::functions::reference_return::Homing;
 use crate::functions::{Dispatch, FunctionId};
 use crate::in_force::{InForce, MOTION};
 use crate::limits;
@@ -24,7 +25,9 @@ use crate::moves::ActiveCycle;
 use crate::offsets::{OffsetInForce, OffsetTables};
 use crate::parts::Parts;
 use crate::report::Alarm;
+use crate::strokes::Strokes;
 use crate::text::{Cursor, Line, Text};
+use crate::transform::Transform;
 use crate::zeros::Zeros;
 
 /// What one step gave.
@@ -88,6 +91,14 @@ pub(crate) struct Core {
     pub(crate) zeros: Zeros,
     /// Axes beyond X and Z.
     pub(crate) axes: Axes,
+    pub(crate) homing: Homing,
+    pub(crate) strokes: Strokes,
+    /// From program to work coordinates.
+    pub(crate) transform: Transform,
+    /// Moves are transformed, checked against strokes, or refused: see [`Core::look_at_moves`].
+    pub(crate) looks_at_moves: bool,
+    /// Rapid rates of X and Z.
+    pub(crate) rapid_rates_mm_per_min: [f64; 2],
     pub(crate) offsets: OffsetTables,
     pub(crate) modal: Modal,
     pub(crate) text: Text,
@@ -167,8 +178,9 @@ impl Interpreter {
             control.policies.decimal_rule == turnwright_control::policy::DecimalRule::AlwaysCalculator;
         let settings = Settings::new(&control.parameters, always, control.limits.number_digits);
         let dispatch = Dispatch::new(&control);
-        let zeros = Zeros::new(&control, setup)?;
         let machine = setup.machine()?;
+        let strokes = Strokes::new(&control.parameters);
+        let zeros = Zeros::new(&control, setup, &machine)?;
         let mut axes =
             Axes::new(machine.axes, machine.live_tool_rpm_max.is_some(), dispatch.has_incremental_words);
         axes.plane = settings.plane_at_power_on;
@@ -194,6 +206,7 @@ impl Interpreter {
             work: 0,
             cycle: SingleCycle::default(),
             is_incremental: false,
+            stroke_two_is_on: settings.stroke_two_at_power_on,
             in_force: InForce::new(dispatch.codes_at_power_on),
         };
         let parts = Parts::new(&control.parameters);
@@ -205,6 +218,11 @@ impl Interpreter {
             options,
             zeros,
             axes,
+            homing: Homing { is_made: setup.start.homed, by_way_of: None },
+            strokes,
+            transform: Transform::default(),
+            looks_at_moves: false,
+            rapid_rates_mm_per_min: [machine.rapid_x_mm_per_min, machine.rapid_z_mm_per_min],
             offsets,
             tip: modal.position,
             untaken: None,
@@ -250,6 +268,7 @@ impl Interpreter {
         core.modal.feed = core.initial_feed();
         core.modal.is_incremental = core.starts_incremental();
         core.start_at_reference();
+        core.look_at_moves();
         Ok(Self { core, block: Block::new(), alarm: None })
     }
 

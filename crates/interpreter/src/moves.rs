@@ -132,7 +132,7 @@ impl Core {
 
     /// Gives out a move of the block in work and takes its end as the tool's place.
     #[inline]
-    pub(crate) fn emit_move(&mut self, to: Position<WorkTip>, action: Action) -> Result<(), Alarm> {
+    pub(crate) fn emit_move(&mut self, to: Position<WorkTip>, mut action: Action) -> Result<(), Alarm> {
         if self.capture.is_some() {
             return self.capture_move(to, &action);
         }
@@ -140,8 +140,11 @@ impl Core {
             return self.emit_move_short(to, action);
         }
         let goes = to != self.tip || is_move_of_its_own(&action);
-        self.tip = to;
+        let from = std::mem::replace(&mut self.tip, to);
         if goes {
+            if self.looks_at_moves {
+                action = self.looked_at(from, action)?;
+            }
             let origin = self.origin();
             self.out.push_back(Command { action, origin });
         }
@@ -214,11 +217,15 @@ impl Core {
             depth,
             cycle: Some(CycleOrigin { label: CycleLabel(cycle.code), pass, phase: step.phase }),
         };
-        if let Some(to) = step.action.end_point() {
-            self.tip = to;
+        let mut action = step.action;
+        if let Some(to) = action.end_point() {
+            let from = std::mem::replace(&mut self.tip, to);
             self.modal.position = to;
+            if self.looks_at_moves {
+                action = self.looked_at(from, action)?;
+            }
         }
-        self.out.push_back(Command { action: step.action, origin });
+        self.out.push_back(Command { action, origin });
         Ok(())
     }
 }

@@ -19,6 +19,7 @@ use crate::in_force::{GROUPS, MOTION};
 use crate::machine::{Core, Interpreter};
 use crate::modal::{FeedMode, SpeedMode};
 use crate::text::Text;
+use crate::transform::Transform;
 
 /// Groups that a reset puts back whatever the parameter says: nose compensation, modal macro calls, polar
 /// interpolation.
@@ -47,6 +48,11 @@ impl Core {
             Ending::EndAndRewind => self.settings.no_rewind_at_end,
         };
         self.drop_work();
+        if self.settings.program_end_clears_local {
+            self.with_new_zero(|core| core.zeros.clear_local());
+        } else if !self.settings.reset_clears_local && self.zeros.has_local() {
+            self.warn_once("local-shift-left-on");
+        }
         self.reset_modes();
         // Nothing follows the end: new coordinates of the tool are told at the next start.
         self.out.truncate(told.0);
@@ -77,11 +83,17 @@ impl Core {
             self.modal.is_incremental = self.starts_incremental();
             self.has_untold_path_mode |= self.modal.path_mode != PathMode::default();
             self.modal.path_mode = PathMode::default();
+            self.modal.stroke_two_is_on = self.settings.stroke_two_at_power_on;
+            self.with_new_zero(|core| core.transform = Transform::default());
         }
         if clears || self.settings.reset_selects_first_work {
             self.modal.in_force.codes[WORK_COORDINATES] = self.dispatch.codes_at_power_on[WORK_COORDINATES];
             self.with_new_zero(|core| core.modal.work = 0);
         }
+        if self.settings.reset_clears_local {
+            self.with_new_zero(|core| core.zeros.clear_local());
+        }
+        self.look_at_moves();
         if self.control.policies.speed_limit_at_reset == SpeedLimitAtReset::Cancelled {
             self.modal.rpm_max = None;
         }

@@ -9,7 +9,7 @@
 
 use turnwright_canon::Action;
 use turnwright_control::policy::WorkpieceShift;
-use turnwright_control::{Axis, AxisPair, Control, Setup, SetupFault, nearest};
+use turnwright_control::{Axis, AxisPair, Control, Machine, Setup, SetupFault, nearest};
 use turnwright_units::{
     Diameter, Displacement, LeastIncrement, Length, MachineTurret, Position, Radius, WorkTip,
 };
@@ -98,6 +98,8 @@ pub(crate) struct Zeros {
     pub(crate) preset: Displacement<MachineTurret>,
     /// The local zero, in every system.
     pub(crate) local: Displacement<MachineTurret>,
+    /// From the tool of one turret to that of the turret on the other side.
+    other_turret: Radius,
     /// The reference points 1 to 4.
     pub(crate) reference: [Position<MachineTurret>; 4],
 }
@@ -113,6 +115,10 @@ fn displacement(pair: AxisPair) -> Result<Displacement<MachineTurret>, SetupFaul
     }
 }
 
+fn length(mm: f64) -> Length {
+    Length::from_mm_rounded(mm, LeastIncrement::METRIC_C).unwrap_or(Length::ZERO)
+}
+
 /// A parameter with a value for each axis.
 fn pair(control: &Control, name: &str) -> AxisPair {
     let value = |axis| control.parameters.axis_value(name, axis);
@@ -125,7 +131,7 @@ impl Zeros {
     ///
     /// # Errors
     /// Values out of range, and names of systems that the control does not have.
-    pub(crate) fn new(control: &Control, setup: &Setup) -> Result<Self, SetupFault> {
+    pub(crate) fn new(control: &Control, setup: &Setup, machine: &Machine) -> Result<Self, SetupFault> {
         let parameter = |name| displacement(pair(control, name));
         let mut systems = Vec::new();
         for name in WORK_PARAMETERS {
@@ -138,7 +144,7 @@ impl Zeros {
             *point = Position::new(place.x, place.z);
         }
         // The machine file gives the place of the first reference point in work coordinates.
-        let seen = displacement(setup.machine()?.reference)?;
+        let seen = displacement(machine.reference)?;
         let mut zeros = Self {
             base: Displacement::new(reference[0].x - seen.x, reference[0].z - seen.z),
             external: parameter("work-zero-external")?,
@@ -148,6 +154,7 @@ impl Zeros {
             shift_rule: control.policies.workpiece_shift,
             preset: NOTHING,
             local: NOTHING,
+            other_turret: Radius(length(control.parameters.value("double-turret-distance"))),
             reference,
         };
         for (name, pair) in &setup.work {
@@ -236,6 +243,16 @@ impl Zeros {
         Some(())
     }
 
+    /// Takes the local shift back.
+    pub(crate) fn clear_local(&mut self) {
+        self.local = NOTHING;
+    }
+
+    /// Whether a local shift is in force.
+    pub(crate) fn has_local(&self) -> bool {
+        self.local != NOTHING
+    }
+
     /// From machine zero to the zero of a work system with every shift but the tool's.
     pub(crate) fn of_work(&self, system: usize) -> Displacement<MachineTurret> {
         let plus = |a: Displacement<MachineTurret>, b: Displacement<MachineTurret>| {
@@ -256,29 +273,31 @@ impl Zeros {
 
 #[allow(dead_code, reason = "for data setting and system variables")]
 impl Core {
-    /// From machine coordinates to the zero of the work system with every shift in force.
+    /// From machine coordinates to the zero of the work system with every shift in force. With the mirror on, the
+    /// tool is the one of the turret on the other side.
     pub(crate) fn zero(&self) -> Displacement<MachineTurret> {
         let work = self.zeros.of_work(self.modal.work);
         let shift = self.modal.offset_in_force.shift;
-        Displacement::new(work.x + shift.x, work.z + shift.z)
+        let other_turret = if self.transform.is_mirrored { self.zeros.other_turret } else { Radius::ZERO };
+        Displacement::new(work.x + shift.x + other_turret, work.z + shift.z)
     }
 
     /// From machine coordinates to those of the tip: the zero, and the way that the offset has moved the tool.
-    fn tip_zero(&self) -> Displacement<MachineTurret> {
+    pub(crate) fn tip_zero(&self) -> Displacement<MachineTurret> {
         let (zero, movement) = (self.zero(), self.modal.offset_in_force.movement);
         Displacement::new(zero.x + movement.x, zero.z + movement.z)
     }
 
-    /// A place of the tip in the work system in force, in machine coordinates.
+    /// A place of the tip as the program has it, in machine coordinates.
     pub(crate) fn to_machine(&self, place: Position<WorkTip>) -> Position<MachineTurret> {
-        let zero = self.tip_zero();
+        let (place, zero) = (self.in_work(place), self.tip_zero());
         Position::new(place.x + zero.x, place.z + zero.z)
     }
 
-    /// The place of the tip in the work system in force while the turret stands at a machine place.
+    /// The place of the tip as the program has it while the turret stands at a machine place.
     pub(crate) fn to_work(&self, place: Position<MachineTurret>) -> Position<WorkTip> {
         let zero = self.tip_zero();
-        Position::new(place.x - zero.x, place.z - zero.z)
+        self.transform.to_program(Position::new(place.x - zero.x, place.z - zero.z))
     }
 
     /// Where the tool is in machine coordinates, at the end of the block in work.
@@ -316,16 +335,23 @@ impl Core {
     /// offset is owed.
     pub(crate) fn with_new_zero(&mut self, change: impl FnOnce(&mut Self)) {
         let (before, tip_before) = (self.zero(), self.tip_zero());
+        let (place, tip) = (self.modal.position, self.tip);
+        let (place_in_work, tip_in_work) = (self.in_work(place), self.in_work(tip));
         change(self);
         let (after, tip_after) = (self.zero(), self.tip_zero());
-        let (place, tip) = (self.modal.position, self.tip);
-        self.modal.position = Position::new(place.x + before.x - after.x, place.z + before.z - after.z);
-        if tip_before != tip_after {
-            self.tip = Position::new(tip.x + tip_before.x - tip_after.x, tip.z + tip_before.z - tip_after.z);
-            // What the program's place moved by and the tip's did not.
-            let (moved, tip_moved) = (self.modal.position - place, self.tip - tip);
+        let moved = |place: Position<WorkTip>, before: Displacement<_>, after: Displacement<_>| {
+            Position::new(place.x + before.x - after.x, place.z + before.z - after.z)
+        };
+        let tip_in_new_work = moved(tip_in_work, tip_before, tip_after);
+        self.modal.position = self.transform.to_program(moved(place_in_work, before, after));
+        self.tip = self.transform.to_program(tip_in_new_work);
+        // What the program's place moved by and the tip's did not.
+        let (moved, tip_moved) = (self.modal.position - place, self.tip - tip);
+        if moved != tip_moved {
             self.owe_movement(moved.x - tip_moved.x, moved.z - tip_moved.z);
-            self.emit(Action::Relocate { to: self.tip, others: None });
+        }
+        if tip_in_work != tip_in_new_work {
+            self.emit(Action::Relocate { to: tip_in_new_work, others: None });
         }
     }
 }
@@ -336,10 +362,14 @@ mod tests {
 
     use turnwright_control::{DEFAULT_CONTROL, control_names};
 
+    fn made(control: &Control, setup: &Setup) -> Result<Zeros, SetupFault> {
+        Zeros::new(control, setup, &setup.machine()?)
+    }
+
     /// The zeros of the usual control, which has additional systems.
     fn zeros(setup: &str) -> Result<Zeros, SetupFault> {
         let control = Control::load(DEFAULT_CONTROL).expect("a control");
-        Zeros::new(&control, &Setup::parse(setup).expect("a setup"))
+        made(&control, &Setup::parse(setup).expect("a setup"))
     }
 
     #[test]
@@ -363,7 +393,7 @@ mod tests {
         let mut controls = control_names().into_iter().map(|name| Control::load(name).expect("a control"));
         let plain = controls.find(|control| control.limits.additional_work_systems == 0).expect("a control");
         let setup = Setup::parse("[work]\n\"G54.1 P1\" = { z = -7 }\n").expect("a setup");
-        let fault = Zeros::new(&plain, &setup).expect_err("no such system");
+        let fault = made(&plain, &setup).expect_err("no such system");
         assert!(fault.message.contains("G54 to G59, EXT"), "{}", fault.message);
         let fault = zeros("[work]\nG60 = { z = -7 }\n").expect_err("no such system");
         assert!(fault.message.contains("G54.1 P48"), "{}", fault.message);
@@ -376,7 +406,7 @@ mod tests {
         let mut control = Control::load(DEFAULT_CONTROL).expect("a control");
         control.parameters.set("1221.Z", "-5").expect("a parameter");
         let setup = |z| Setup::parse(&format!("[work]\nG54 = {{ z = {z} }}\n")).expect("a setup");
-        assert!(Zeros::new(&control, &setup(-5)).is_ok());
-        assert!(Zeros::new(&control, &setup(-6)).is_err());
+        assert!(made(&control, &setup(-5)).is_ok());
+        assert!(made(&control, &setup(-6)).is_err());
     }
 }

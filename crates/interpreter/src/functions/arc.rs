@@ -33,14 +33,16 @@ pub(super) static ARC_CLOCKWISE: Function =
         .with_letters(b"RIKLD")
         .triggered_by(b"RIK")
         .with_other_axes()
-        .allowed_in_figure();
+        .allowed_in_figure()
+        .allowed_in_rotation();
 
 pub(super) static ARC_COUNTER_CLOCKWISE: Function =
     Function::motion("arc-counter-clockwise", |core, call| arc(core, call, Turn::CounterClockwise))
         .with_letters(b"RIKLD")
         .triggered_by(b"RIK")
         .with_other_axes()
-        .allowed_in_figure();
+        .allowed_in_figure()
+        .allowed_in_rotation();
 
 /// Letters of corners where they may lie between any cuts.
 const CORNERS: u32 = super::letters(b"LD");

@@ -26,7 +26,8 @@ pub(super) static DWELL: Function = Function::one_shot("dwell", dwell)
     .with_letters(b"PQ")
     .allowed_in_figure()
     .keeping_single_cycle()
-    .setting_data();
+    .setting_data()
+    .allowed_in_rotation();
 
 /// Longest dwell, in thousandths of a second.
 const DWELL_MAX: i64 = 99_999_999;

@@ -17,8 +17,11 @@ use crate::corner::Motion;
 use crate::machine::Core;
 use crate::report::Alarm;
 
-pub(super) static LINEAR: Function =
-    Function::motion("linear", linear).drawing_lines().with_other_axes().allowed_in_figure();
+pub(super) static LINEAR: Function = Function::motion("linear", linear)
+    .drawing_lines()
+    .with_other_axes()
+    .allowed_in_figure()
+    .allowed_in_rotation();
 
 /// Letters that may make the line part of a path.
 pub(super) const PATH_LETTERS: u32 = super::letters(crate::corner::LETTERS);

@@ -10,10 +10,12 @@ mod coordinate_setting;
 mod data_setting;
 mod dwell;
 mod finishing;
+mod fluctuation;
 mod groove;
 mod interpolation;
 mod linear;
 mod look_ahead;
+mod machine_coordinates;
 mod modes;
 mod multi_thread;
 mod path_mode;
@@ -22,10 +24,12 @@ mod plane_arc;
 mod planes;
 mod polygon;
 mod rapid;
-mod reference_return;
+pub(crate) mod reference_return;
 mod rough;
 mod single_cycles;
+mod stroke_check;
 mod thread;
+mod transforms;
 
 use turnwright_control::{CodeSystem, Control, Functions, parse_code};
 use turnwright_syntax::Block;
@@ -72,6 +76,8 @@ pub(crate) struct Function {
     pub(crate) repeats: bool,
     /// Leaves the end point of a single cycle in force.
     pub(crate) keeps_single_cycle: bool,
+    /// May stand while the coordinates are rotated.
+    pub(crate) in_rotation: bool,
     /// One of the multiple repetitive cycles: a foreign letter has an alarm of its own.
     pub(crate) is_multiple_cycle: bool,
     /// Its lines may be given by their angle.
@@ -105,6 +111,7 @@ impl Function {
             sets_data: false,
             repeats: false,
             keeps_single_cycle: false,
+            in_rotation: false,
             is_multiple_cycle: false,
             draws_lines: false,
         }
@@ -144,6 +151,11 @@ impl Function {
 
     pub(crate) const fn allowed_in_figure(mut self) -> Self {
         self.in_figure = true;
+        self
+    }
+
+    pub(crate) const fn allowed_in_rotation(mut self) -> Self {
+        self.in_rotation = true;
         self
     }
 
@@ -212,6 +224,7 @@ static ALL: &[&Function] = &[
     &modes::WORK_COORDINATES_4,
     &modes::WORK_COORDINATES_5,
     &modes::WORK_COORDINATES_6,
+    &modes::WORK_COORDINATES_ADDITIONAL,
     &modes::CONSTANT_SURFACE_SPEED,
     &modes::CONSTANT_SPINDLE_SPEED,
     &modes::FEED_PER_MINUTE,
@@ -235,11 +248,24 @@ static ALL: &[&Function] = &[
     &path_mode::CUTTING_MODE,
     &look_ahead::LOOK_AHEAD_CONTROL,
     &look_ahead::ADVANCED_PREVIEW,
-    &modes::DOUBLE_TURRET_MIRROR_OFF,
+    &transforms::DOUBLE_TURRET_MIRROR_ON,
+    &transforms::DOUBLE_TURRET_MIRROR_OFF,
+    &transforms::ROTATION_ON,
+    &transforms::ROTATION_OFF,
+    &stroke_check::STROKE_CHECK_ON,
+    &stroke_check::STROKE_CHECK_OFF,
+    &fluctuation::SPINDLE_FLUCTUATION_ON,
+    &fluctuation::SPINDLE_FLUCTUATION_OFF,
     &coordinate_setting::COORDINATE_SETTING,
     &data_setting::DATA_SETTING,
     &data_setting::DATA_SETTING_END,
+    &coordinate_setting::COORDINATE_PRESET,
+    &coordinate_setting::LOCAL_COORDINATES,
+    &machine_coordinates::MACHINE_COORDINATES,
     &reference_return::REFERENCE_RETURN,
+    &reference_return::SECOND_REFERENCE_RETURN,
+    &reference_return::REFERENCE_LEAVE,
+    &reference_return::REFERENCE_CHECK,
     &single_cycles::TURNING_CYCLE,
     &single_cycles::THREAD_CYCLE,
     &single_cycles::FACING_CYCLE,

@@ -1,5 +1,5 @@
 //! Functions that only change a mode: units (G20, G21), nose compensation off (G40), work coordinates (G54 to
-//! G59), speed mode (G96, G97), feed mode (G98, G99), absolute and incremental (systems B and C).
+//! G59, and G54.1 with the number P), speed mode (G96, G97), feed mode (G98, G99), absolute and incremental (systems B and C).
 //!
 //! Each acts before anything else in its block. A change of feed mode does not convert the F in force; a change
 //! back to constant spindle speed without S keeps the speed that the spindle has at that diameter.
@@ -11,17 +11,17 @@ use crate::block::Call;
 use crate::machine::Core;
 use crate::modal::{FeedMode, SpeedMode};
 use crate::report::Alarm;
+use crate::zeros::STANDARD_SYSTEMS;
 
 pub(super) static INCH: Function = Function::mode("inch", |core, _| units(core, true));
 pub(super) static METRIC: Function = Function::mode("metric", |core, _| units(core, false));
 
 pub(super) static NOSE_COMPENSATION_OFF: Function =
-    Function::mode("nose-compensation-off", |_, _| Ok(())).allowed_in_figure();
+    Function::mode("nose-compensation-off", |_, _| Ok(())).allowed_in_figure().allowed_in_rotation();
 
 // These cancel modes that nothing in this version can switch on: they are in force already.
-pub(super) static HOLE_CYCLE_OFF: Function = Function::mode("hole-cycle-off", |_, _| Ok(()));
-pub(super) static DOUBLE_TURRET_MIRROR_OFF: Function =
-    Function::mode("double-turret-mirror-off", |_, _| Ok(()));
+pub(super) static HOLE_CYCLE_OFF: Function =
+    Function::mode("hole-cycle-off", |_, _| Ok(())).allowed_in_rotation();
 
 pub(super) static WORK_COORDINATES_1: Function =
     Function::mode("work-coordinates-1", |core, _| work(core, 0));
@@ -35,17 +35,22 @@ pub(super) static WORK_COORDINATES_5: Function =
     Function::mode("work-coordinates-5", |core, _| work(core, 4));
 pub(super) static WORK_COORDINATES_6: Function =
     Function::mode("work-coordinates-6", |core, _| work(core, 5));
+pub(super) static WORK_COORDINATES_ADDITIONAL: Function =
+    Function::mode("work-coordinates-additional", additional_work).with_letters(b"P");
 
 pub(super) static CONSTANT_SURFACE_SPEED: Function =
-    Function::mode("constant-surface-speed", surface_speed).allowed_in_figure();
+    Function::mode("constant-surface-speed", surface_speed).allowed_in_figure().allowed_in_rotation();
 pub(super) static CONSTANT_SPINDLE_SPEED: Function =
-    Function::mode("constant-spindle-speed", spindle_speed).allowed_in_figure();
+    Function::mode("constant-spindle-speed", spindle_speed).allowed_in_figure().allowed_in_rotation();
 
 pub(super) static FEED_PER_MINUTE: Function =
-    Function::mode("feed-per-minute", |core, _| feed_mode(core, FeedMode::PerMinute)).allowed_in_figure();
+    Function::mode("feed-per-minute", |core, _| feed_mode(core, FeedMode::PerMinute))
+        .allowed_in_figure()
+        .allowed_in_rotation();
 pub(super) static FEED_PER_REVOLUTION: Function =
     Function::mode("feed-per-revolution", |core, _| feed_mode(core, FeedMode::PerRevolution))
-        .allowed_in_figure();
+        .allowed_in_figure()
+        .allowed_in_rotation();
 
 pub(super) static ABSOLUTE: Function = Function::mode("absolute", |core, _| increments(core, false));
 pub(super) static INCREMENTAL: Function = Function::mode("incremental", |core, _| increments(core, true));
@@ -64,6 +69,22 @@ fn units(core: &mut Core, is_inch: bool) -> Result<(), Alarm> {
 fn work(core: &mut Core, system: usize) -> Result<(), Alarm> {
     core.with_new_zero(|core| core.modal.work = system);
     Ok(())
+}
+
+/// `G54.1 P_`; without P it is the first additional system.
+fn additional_work(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
+    let Some(word) = call.block.word(b'P') else {
+        if let Some(word) = call.word {
+            core.warn("work-system-missing", word);
+        }
+        return work(core, STANDARD_SYSTEMS);
+    };
+    match core.whole(word, 99_999_999)? as usize {
+        number if (1..=core.zeros.additional_systems()).contains(&number) => {
+            work(core, STANDARD_SYSTEMS + number - 1)
+        }
+        _ => Err(core.alarm("work-system-illegal", word)),
+    }
 }
 
 fn feed_mode(core: &mut Core, mode: FeedMode) -> Result<(), Alarm> {

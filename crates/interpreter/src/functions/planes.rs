@@ -19,9 +19,12 @@ use crate::block::Call;
 use crate::machine::Core;
 use crate::report::Alarm;
 
-pub(super) static PLANE_XY: Function = Function::mode("plane-xy", |core, call| plane(core, call, Plane::Xy));
-pub(super) static PLANE_ZX: Function = Function::mode("plane-zx", |core, call| plane(core, call, Plane::Zx));
-pub(super) static PLANE_YZ: Function = Function::mode("plane-yz", |core, call| plane(core, call, Plane::Yz));
+pub(super) static PLANE_XY: Function =
+    Function::mode("plane-xy", |core, call| plane(core, call, Plane::Xy)).allowed_in_rotation();
+pub(super) static PLANE_ZX: Function =
+    Function::mode("plane-zx", |core, call| plane(core, call, Plane::Zx)).allowed_in_rotation();
+pub(super) static PLANE_YZ: Function =
+    Function::mode("plane-yz", |core, call| plane(core, call, Plane::Yz)).allowed_in_rotation();
 
 /// The modal group of nose compensation.
 const COMPENSATION: usize = 7;

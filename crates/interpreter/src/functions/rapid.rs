@@ -16,8 +16,11 @@ use crate::corner::Motion;
 use crate::machine::Core;
 use crate::report::Alarm;
 
-pub(super) static RAPID: Function =
-    Function::motion("rapid", rapid).drawing_lines().with_other_axes().allowed_in_figure();
+pub(super) static RAPID: Function = Function::motion("rapid", rapid)
+    .drawing_lines()
+    .with_other_axes()
+    .allowed_in_figure()
+    .allowed_in_rotation();
 
 fn rapid(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     if call.block.present() & core.axes.rare != 0 {
