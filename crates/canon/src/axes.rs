@@ -9,7 +9,7 @@
 
 use turnwright_units::{Angle, Length, Position, Radius, WorkTip};
 
-use crate::{Shape, Turn};
+use crate::{Action, Shape, Turn};
 
 /// Ends of the axes beyond X and Z in a move; `None` for one that stays where it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -140,6 +140,37 @@ impl Interpolation {
                 (place, turn_to(direction, before, shape, to, v))
             }
         }
+    }
+}
+
+/// Follows commands and knows where moves end in the section: at which distance from the spindle axis, at which
+/// Z. That differs from the end point in polar interpolation only.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SectionPlace {
+    interpolation: Interpolation,
+    v: Length,
+}
+
+impl SectionPlace {
+    /// The end of a move in the section, `None` for everything else.
+    #[inline]
+    pub fn end_of(&mut self, action: &Action) -> Option<Position<WorkTip>> {
+        if let Action::Interpolation(interpolation) = action {
+            *self = Self { interpolation: *interpolation, v: Length::ZERO };
+        }
+        let to = action.end_point()?;
+        Some(if self.is_polar() { self.polar_end(action, to) } else { to })
+    }
+
+    /// Whether end points are places of a plane across the spindle.
+    pub const fn is_polar(&self) -> bool {
+        matches!(self.interpolation, Interpolation::Polar { .. })
+    }
+
+    #[cold]
+    fn polar_end(&mut self, action: &Action, to: Position<WorkTip>) -> Position<WorkTip> {
+        self.v = action.others().and_then(|others| others.v).unwrap_or(self.v);
+        self.interpolation.axes_at(to, self.v, &Shape::Line, Angle::ZERO).0
     }
 }
 

@@ -10,7 +10,7 @@
 mod axes;
 mod listing;
 
-pub use axes::{Interpolation, OtherAxes, SidePlane, SidePoint, SpeedRatio};
+pub use axes::{Interpolation, OtherAxes, SectionPlace, SidePlane, SidePoint, SpeedRatio};
 pub use listing::write_listing;
 use turnwright_units::{Angle, Feed, Lead, Position, Revolutions, Rpm, Seconds, SurfaceSpeed, WorkTip};
 

@@ -7,7 +7,7 @@
 //! times still see it. Coordinates are millimetres, X as a radius, in `f32`: half a micrometre at eight
 //! metres, far below a pixel. Deliberately not here: pixels, colours, and any number that a check would use.
 
-use turnwright_canon::{Action, Command, CycleOrigin, Dwell, RapidPath, Shape, Turn};
+use turnwright_canon::{Action, Command, CycleOrigin, Dwell, RapidPath, SectionPlace, Shape, Turn};
 use turnwright_units::{Feed, Position, WorkTip};
 
 /// Segments kept; about 200 MB when all are used.
@@ -124,6 +124,7 @@ impl Extents {
 #[derive(Clone, Debug)]
 pub struct PathRecorder {
     at: Position<WorkTip>,
+    section: SectionPlace,
     rapid_x_mm_per_min: f64,
     rapid_z_mm_per_min: f64,
     segments: Vec<Segment>,
@@ -144,6 +145,7 @@ impl PathRecorder {
     pub fn new(start: Position<WorkTip>, rapid_x_mm_per_min: f64, rapid_z_mm_per_min: f64) -> Self {
         Self {
             at: start,
+            section: SectionPlace::default(),
             rapid_x_mm_per_min,
             rapid_z_mm_per_min,
             segments: Vec::new(),
@@ -169,24 +171,25 @@ impl PathRecorder {
     pub fn add(&mut self, command: &Command, seconds: f64) {
         let seconds = if seconds.is_finite() { seconds.max(0.0) } else { 0.0 };
         self.elapsed_s += seconds;
+        let end = self.section.end_of(&command.action).unwrap_or(self.at);
         match &command.action {
-            Action::Rapid { to, path, .. } => self.add_rapid(command, *to, *path),
-            Action::Feed { to, shape, feed, .. } => {
+            Action::Rapid { path, .. } => self.add_rapid(command, end, *path),
+            Action::Feed { shape, feed, .. } => {
                 let bow = match shape {
                     // The picture is the section: an arc across it is seen from its edge.
                     Shape::Line | Shape::SideArc { .. } => None,
-                    Shape::Arc { turn, centre } => bow_between(self.at, *to, *centre, *turn),
+                    Shape::Arc { turn, centre } => bow_between(self.at, end, *centre, *turn),
                 };
                 let mm = feed.length().to_mm() as f32;
                 let advance = match feed {
                     Feed::PerRevolution(_) => Advance::MmPerRevolution(mm),
                     Feed::PerMinute(_) => Advance::MmPerMinute(mm),
                 };
-                self.add_cut(command, *to, bow, SegmentKind::Feed, advance);
+                self.add_cut(command, end, bow, SegmentKind::Feed, advance);
             }
-            Action::Thread { to, lead, .. } => {
+            Action::Thread { lead, .. } => {
                 let advance = Advance::LeadMm(lead.0.to_mm() as f32);
-                self.add_cut(command, *to, None, SegmentKind::Thread, advance);
+                self.add_cut(command, end, None, SegmentKind::Thread, advance);
             }
             Action::Relocate { to, .. } => self.at = *to,
             Action::Tool { tool, .. } => self.tool = *tool,
@@ -418,6 +421,22 @@ mod tests {
 
     fn recorder() -> PathRecorder {
         PathRecorder::new(at(100, 100), 5_000.0, 10_000.0)
+    }
+
+    #[test]
+    fn in_polar_interpolation_the_picture_has_the_distance_from_the_spindle_axis() {
+        use turnwright_canon::{Interpolation, OtherAxes};
+        let at = |x: i32| Position::new(Radius(Length::from_mm(x)), Length::ZERO);
+        let mut path = PathRecorder::new(at(3), 12_000.0, 16_000.0);
+        let feed = Feed::PerRevolution(FeedPerRevolution(Length::from_mm(1)));
+        let polar = Interpolation::Polar { zero: turnwright_units::Angle::ZERO, is_below: false };
+        let others = OtherAxes { v: Some(Length::from_mm(4)), ..OtherAxes::default() };
+        let cut = Action::Feed { to: at(3), shape: Shape::Line, feed, others: Some(Box::new(others)) };
+        for action in [Action::Interpolation(polar), cut] {
+            path.add(&Command { action, origin: Origin::line(1) }, 1.0);
+        }
+        let [segment] = path.segments() else { panic!("one segment") };
+        assert_eq!((segment.start.radius_mm, segment.end.radius_mm), (3.0, 5.0));
     }
 
     #[test]

@@ -68,6 +68,8 @@ pub(crate) struct Axes {
 const TURNING: u32 = Block::bit(b'C') | Block::bit(b'H');
 const ACROSS: u32 = Block::bit(b'Y') | Block::bit(b'V');
 const SWIVEL: u32 = Block::bit(b'B');
+/// In a virtual plane every move is rare.
+const VIRTUAL: u32 = u32::MAX;
 
 impl Axes {
     /// At the reference point, with the spindle as a spindle where M codes change it.
@@ -113,13 +115,13 @@ impl Axes {
 
     /// Whether moves run in a virtual plane.
     pub(crate) fn is_virtual(&self) -> bool {
-        self.interpolation != Interpolation::Normal
+        self.rare == VIRTUAL
     }
 
     /// Moves from here on run in this kind of plane.
     pub(crate) fn interpolate(&mut self, interpolation: Interpolation) {
         self.interpolation = interpolation;
-        self.rare = if self.is_virtual() { u32::MAX } else { self.letters };
+        self.rare = if interpolation == Interpolation::Normal { self.letters } else { VIRTUAL };
         self.unrolled_words = false;
         self.polar_words = false;
         self.v = match interpolation {

@@ -8,7 +8,7 @@
 //!
 //! Memory is bounded: operations past [`OPERATIONS_MAX`] are added to the last one.
 
-use turnwright_canon::{Action, Command, CycleLabel, Origin, Shape};
+use turnwright_canon::{Action, Command, CycleLabel, Origin, SectionPlace, Shape};
 use turnwright_units::{Length, Position, Radius, WorkTip};
 
 use crate::path::{ArcPath, length_from_mm};
@@ -149,6 +149,9 @@ pub struct Summary {
     pass: Option<(u32, u32)>,
     /// The last move was a cutting one.
     cutting_now: bool,
+    section: SectionPlace,
+    /// End of the last move in the section.
+    at: Option<Position<WorkTip>>,
 }
 
 impl Summary {
@@ -194,7 +197,7 @@ impl Summary {
         if let Action::Tool { tool, offset } = command.action {
             self.call_tool(tool, offset, origin);
         }
-        let end = command.action.end_point();
+        let end = self.section.end_of(&command.action);
         let label = origin.cycle.map(|cycle| cycle.label);
         let enters = end.is_some() && self.moved && self.label != label;
         if enters || self.operations.is_empty() {
@@ -241,7 +244,9 @@ impl Summary {
     }
 
     fn add_move(&mut self, command: &Command, timing: &Timing, to: Position<WorkTip>) {
-        let extents = Extents::of_move(&command.action, timing.from, to);
+        let from = if self.section.is_polar() { self.at.unwrap_or(timing.from) } else { timing.from };
+        self.at = Some(to);
+        let extents = Extents::of_move(&command.action, from, to);
         join(&mut self.all, extents, Extents::with);
         let cuts = matches!(timing.kind, Kind::Cutting | Kind::Threading);
         if cuts {
