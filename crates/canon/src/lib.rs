@@ -104,6 +104,8 @@ pub enum Action {
     End,
     /// Words for the operator.
     Message(Box<str>),
+    /// A line that the program writes to an outside device.
+    Output(Box<str>),
 }
 
 /// How the axes share a rapid move.

@@ -139,6 +139,10 @@ pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
             out.extend_from_slice(b"message ");
             out.extend_from_slice(text.as_bytes());
         }
+        Action::Output(text) => {
+            out.extend_from_slice(b"output ");
+            out.extend_from_slice(text.as_bytes());
+        }
     }
     if let Some(cycle) = &command.origin.cycle {
         out.extend_from_slice(format!("  {} {}", cycle.label, cycle.phase.word()).as_bytes());

@@ -93,6 +93,12 @@ pub(crate) struct Machine {
     /// Blocks executed before the run is stopped
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) max_blocks: Option<u64>,
+    /// Blocks of loops executed without a single command before the run is stopped
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) max_idle_blocks: Option<u64>,
+    /// Writes what the program prints with DPRNT and BPRNT to this file
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    pub(crate) program_output: Option<PathBuf>,
 }
 
 /// What is not tolerated.

@@ -6,9 +6,10 @@
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use turnwright_diagnostics::{Diagnostic, SourceId};
-use turnwright_interpreter::{Environment, ReadFault};
+use turnwright_interpreter::{DateTime, Environment, ProgramName, ReadFault};
 use turnwright_syntax::find_line_end;
 
 use crate::arguments::Machine;
@@ -232,12 +233,18 @@ pub(crate) fn unreadable(name: &str, error: &io::Error, speech: Speech) -> Findi
     Finding::new(name, Diagnostic::error("file-unreadable")).failed().with_hint(speech.system(error))
 }
 
-/// The world as the interpreter sees it: one text and the switches of the panel.
+/// Most programs called from other files in one run.
+const OTHERS_MAX: usize = 1_000;
+
+/// The world as the interpreter sees it: one text, the programs beside it, and the switches of the panel.
 #[derive(Debug)]
 pub(crate) struct Panel<'a> {
     text: &'a ProgramText,
+    /// Programs in other files that were called; the first is source 1.
+    others: Vec<ProgramText>,
     skips: [bool; 10],
     stops_optionally: bool,
+    speech: Speech,
 }
 
 impl<'a> Panel<'a> {
@@ -247,13 +254,73 @@ impl<'a> Panel<'a> {
         for switch in &machine.skip {
             skips[usize::from(*switch % 10)] = true;
         }
-        Self { text, skips, stops_optionally: machine.optional_stop }
+        // Why a neighbour cannot be opened is not said: the call says that there is no such program.
+        let speech = Speech { language: turnwright_control::Language::English };
+        Self { text, others: Vec::new(), skips, stops_optionally: machine.optional_stop, speech }
+    }
+
+    /// A text by its number.
+    pub(crate) fn source(&self, source: SourceId) -> &ProgramText {
+        match source.0.checked_sub(1).and_then(|place| self.others.get(place as usize)) {
+            Some(other) => other,
+            None => self.text,
+        }
+    }
+}
+
+/// The file beside a program that holds another one: named by its number (`O1234.nc`, `1234`) or its name.
+fn file_beside(program: &Path, name: ProgramName<'_>) -> Option<PathBuf> {
+    let folder = program.parent()?;
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let mut found: Vec<PathBuf> = std::fs::read_dir(folder)
+        .ok()?
+        .filter_map(|entry| entry.ok().map(|entry| entry.path()))
+        .filter(|path| path != program && path.is_file() && names(path, name))
+        .collect();
+    // Which one, must not depend on the order of the folder.
+    found.sort();
+    found.into_iter().next()
+}
+
+fn names(path: &Path, name: ProgramName<'_>) -> bool {
+    const EXTENSIONS: [&str; 8] = ["", "nc", "cnc", "txt", "tap", "prg", "mpf", "iso"];
+    let extension = path.extension().map_or_else(String::new, |text| text.to_string_lossy().to_lowercase());
+    let Some(stem) = path.file_stem().map(|stem| stem.to_string_lossy().to_uppercase()) else { return false };
+    match name {
+        ProgramName::Number(number) => {
+            let digits = stem.strip_prefix('O').unwrap_or(&stem);
+            let is_number = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
+            EXTENSIONS.contains(&extension.as_str()) && is_number && digits.parse() == Ok(number)
+        }
+        ProgramName::Text(text) => {
+            let whole =
+                path.file_name().map_or_else(String::new, |file| file.to_string_lossy().to_uppercase());
+            let text = text.to_uppercase();
+            whole == text || (stem == text && EXTENSIONS.contains(&extension.as_str()))
+        }
     }
 }
 
 impl Environment for Panel<'_> {
-    fn read(&mut self, _source: SourceId, offset: u64, buffer: &mut [u8]) -> Result<usize, ReadFault> {
-        self.text.read_at(offset, buffer).map_err(|_| ReadFault)
+    fn read(&mut self, source: SourceId, offset: u64, buffer: &mut [u8]) -> Result<usize, ReadFault> {
+        self.source(source).read_at(offset, buffer).map_err(|_| ReadFault)
+    }
+
+    fn program(&mut self, name: ProgramName<'_>) -> Option<SourceId> {
+        let path = file_beside(self.text.path.as_deref()?, name)?;
+        if let Some(known) = self.others.iter().position(|other| other.path.as_deref() == Some(&path)) {
+            return Some(SourceId(known as u32 + 1));
+        }
+        if self.others.len() >= OTHERS_MAX {
+            return None;
+        }
+        self.others.push(ProgramText::open(&path, self.speech).ok()?);
+        Some(SourceId(self.others.len() as u32))
+    }
+
+    fn now(&self) -> Option<DateTime> {
+        let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).ok()?.as_secs();
+        Some(date_and_time(since_1970))
     }
 
     fn skips(&self, switch: u8) -> bool {
@@ -262,5 +329,55 @@ impl Environment for Panel<'_> {
 
     fn stops_optionally(&self) -> bool {
         self.stops_optionally
+    }
+}
+
+/// Seconds since 1970 as a date and a time of day, universal time.
+fn date_and_time(seconds: u64) -> DateTime {
+    let (days, time) = (seconds / 86_400, seconds % 86_400);
+    // Years that begin in March: then the leap day is the last of its year.
+    let shifted = days + 719_468;
+    let (era, day_of_era) = (shifted / 146_097, shifted % 146_097);
+    let year_of_era = (day_of_era - day_of_era / 1_460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
+    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+    let month_from_march = (5 * day_of_year + 2) / 153;
+    let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
+    let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };
+    let year = era * 400 + year_of_era + u64::from(month <= 2);
+    DateTime {
+        year: year as u16,
+        month: month as u8,
+        day: day as u8,
+        hour: (time / 3_600) as u8,
+        minute: (time / 60 % 60) as u8,
+        second: (time % 60) as u8,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn seconds_become_dates() {
+        let show = |seconds| {
+            let at = date_and_time(seconds);
+            format!("{}-{}-{} {}:{}:{}", at.year, at.month, at.day, at.hour, at.minute, at.second)
+        };
+        assert_eq!(show(0), "1970-1-1 0:0:0");
+        assert_eq!(show(951_827_696), "2000-2-29 12:34:56");
+        assert_eq!(show(1_795_305_599), "2026-11-21 23:59:59");
+    }
+
+    #[test]
+    fn programs_are_found_by_number_and_name() {
+        let number = ProgramName::Number(1234);
+        for file in ["O1234", "o1234.NC", "1234.txt", "O01234.cnc"] {
+            assert!(names(Path::new(file), number), "{file}");
+        }
+        for file in ["O12345.nc", "O1234.rs", "AO1234.nc", "O.nc"] {
+            assert!(!names(Path::new(file), number), "{file}");
+        }
+        assert!(names(Path::new("RING.CNC"), ProgramName::Text("ring")));
     }
 }

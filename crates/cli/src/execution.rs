@@ -1,6 +1,10 @@
 //! A program on its way: steps, warnings, the alarm.
 
-use turnwright_canon::Command;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use turnwright_canon::{Action, Command};
 use turnwright_diagnostics::{Diagnostic, Severity, SourceId};
 use turnwright_interpreter::{Interpreter, Options, Step};
 
@@ -20,12 +24,54 @@ pub(crate) struct Execution<'a> {
     early: Option<Diagnostic>,
     /// Number of the program that gave the last command.
     program: Option<u32>,
+    /// Where lines that the program prints go, besides the trace.
+    output: Option<ProgramOutput>,
+}
+
+/// The file that `DPRNT` and `BPRNT` write to.
+#[derive(Debug)]
+struct ProgramOutput {
+    name: String,
+    file: BufWriter<File>,
+    fault: Option<io::Error>,
+}
+
+impl ProgramOutput {
+    fn create(path: &Path) -> Result<Self, Finding> {
+        let name = path.display().to_string();
+        match File::create(path) {
+            Ok(file) => Ok(Self { name, file: BufWriter::new(file), fault: None }),
+            Err(error) => Err(unwritable(&name, &error)),
+        }
+    }
+
+    fn line(&mut self, text: &str) {
+        if self.fault.is_none() {
+            self.fault = writeln!(self.file, "{text}").err();
+        }
+    }
+
+    /// Writes the rest; the fault, if there was one.
+    fn finish(&mut self) -> Option<Finding> {
+        let fault = self.fault.take().or_else(|| self.file.flush().err())?;
+        Some(unwritable(&self.name, &fault))
+    }
+}
+
+fn unwritable(name: &str, error: &io::Error) -> Finding {
+    let diagnostic =
+        Diagnostic::error("output-unwritable").with("name", name).with("value", error.to_string());
+    Finding::new(name, diagnostic).failed()
 }
 
 impl<'a> Execution<'a> {
     /// The program at its start.
     pub(crate) fn new(text: &'a ProgramText, session: &Session, machine: &Machine) -> Result<Self, Finding> {
-        let options = machine.max_blocks.map_or_else(Options::default, |blocks_max| Options { blocks_max });
+        let usual = Options::default();
+        let options = Options {
+            blocks_max: machine.max_blocks.unwrap_or(usual.blocks_max),
+            idle_blocks_max: machine.max_idle_blocks.unwrap_or(usual.idle_blocks_max),
+        };
         let interpreter = Interpreter::new(session.control.clone(), &session.setup, SourceId(0), options)
             .map_err(|fault| session.setup_fault(&fault))?;
         Ok(Self {
@@ -36,6 +82,7 @@ impl<'a> Execution<'a> {
             alarm: None,
             early: session.warning.clone(),
             program: None,
+            output: machine.program_output.as_deref().map(ProgramOutput::create).transpose()?,
         })
     }
 
@@ -46,6 +93,9 @@ impl<'a> Execution<'a> {
             match self.interpreter.step(&mut self.panel) {
                 Step::Emit(command) => {
                     self.program = command.origin.program;
+                    if let (Some(output), Action::Output(text)) = (&mut self.output, &command.action) {
+                        output.line(text);
+                    }
                     return Some(command);
                 }
                 // Somebody presses cycle start.
@@ -86,9 +136,10 @@ impl<'a> Execution<'a> {
 
     /// The warnings since the last call.
     pub(crate) fn take_warnings(&mut self) -> Vec<Finding> {
+        let fault = self.output.as_mut().and_then(ProgramOutput::finish);
         let early = self.early.take();
         let warnings: Vec<Diagnostic> = early.into_iter().chain(self.interpreter.take_warnings()).collect();
-        warnings.into_iter().map(|warning| self.finding(warning)).collect()
+        warnings.into_iter().map(|warning| self.finding(warning)).chain(fault).collect()
     }
 
     /// Everything found and not yet taken, in the order of the lines; the alarm is the last.
@@ -111,8 +162,13 @@ impl<'a> Execution<'a> {
             diagnostic.severity = Severity::Error;
         }
         let is_unreadable = diagnostic.key == "file-unreadable";
-        let finding =
-            Finding::new(self.text.name.as_str(), diagnostic).with_ids(self.interpreter.control().alarm_ids);
+        let source = diagnostic.place.map_or(SourceId(0), |place| place.source);
+        let text = self.panel.source(source);
+        let ids = self.interpreter.control().alarm_ids;
+        let mut finding = Finding::new(text.name.as_str(), diagnostic).with_ids(ids);
+        if source != SourceId(0) {
+            finding = finding.located(text);
+        }
         if is_unreadable { finding.failed() } else { finding }
     }
 }

@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use serde_json::{Value, json};
+use std::borrow::Cow;
 use turnwright_control::policy::AlarmIds;
+
 use turnwright_control::{Language, MessageText, Messages};
 use turnwright_diagnostics::{Diagnostic, Place, Severity};
 
@@ -73,8 +75,8 @@ impl Finding {
     }
 
     /// The control's own number where it has one, else ours, else the name.
-    pub(crate) fn id<'a>(&'a self, messages: &'a Messages) -> &'a str {
-        messages.id(self.diagnostic.key, self.ids).unwrap_or(self.diagnostic.key)
+    pub(crate) fn id<'a>(&'a self, messages: &'a Messages) -> Cow<'a, str> {
+        messages.id_of(&self.diagnostic, self.ids).unwrap_or(Cow::Borrowed(self.diagnostic.key))
     }
 
     /// Its words.

@@ -102,7 +102,7 @@ impl Printer {
         let speech = self.speech;
         let words = finding.words(speech.messages(), speech.language);
         let (message, cause, remedy) = (clean(&words.message), clean(&words.cause), clean(&words.remedy));
-        let id = clean(finding.id(speech.messages()));
+        let id = clean(&finding.id(speech.messages()));
         let file = clean(&finding.file);
         let spot = finding.spot(text);
         let shown = spot.as_ref().map(Shown::new);

@@ -1,5 +1,6 @@
 //! The words of diagnostics, in English and Chinese, and the numbers that controls print for them.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
@@ -78,6 +79,16 @@ impl Messages {
             AlarmIds::Named => &entry.named,
         };
         own.as_deref().or(entry.own.as_deref())
+    }
+
+    /// The number of this diagnostic; the number of an alarm that the program raised is part of it.
+    pub fn id_of(&self, diagnostic: &Diagnostic, ids: AlarmIds) -> Option<Cow<'_, str>> {
+        let id = self.id(diagnostic.key, ids)?;
+        Some(if id.contains('{') {
+            Cow::Owned(fill(id, &diagnostic.arguments, Language::English))
+        } else {
+            Cow::Borrowed(id)
+        })
     }
 
     /// Keys that a number names on a control (several conditions may share one number).

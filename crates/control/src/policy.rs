@@ -400,6 +400,115 @@ policies! {
         /// Cut, with a warning.
         Warn,
     }
+    /// A variable that holds nothing.
+    null_variable: NullVariable {
+        /// A word with it is as if it were not there, and it equals only another empty one.
+        IsNothing,
+        /// It is zero in words and comparisons.
+        IsZero,
+    }
+    /// Functions of custom macro expressions beyond the oldest ones.
+    macro_functions: MacroFunctions {
+        /// None: no `MOD`, `POW`, `ADP`, no `ATAN` of one argument.
+        Basic,
+        /// Those, and no random numbers.
+        Extended,
+        /// Those and `RAND`, `SRAND`.
+        ExtendedWithRandom,
+    }
+    /// How precisely variables are kept.
+    macro_precision: MacroPrecision {
+        /// Eight significant digits, up to 10^47.
+        EightDigits,
+        /// Double precision.
+        Double,
+    }
+    /// A function whose argument stands without brackets.
+    bare_argument: BareArgument {
+        /// Refused.
+        Refused,
+        /// Taken.
+        Taken,
+    }
+    /// How the parameter for the range of the arc tangent turns the range of the arc sine.
+    arc_sine_range: ArcSineRange {
+        /// The same way: unsigned 270 to 90, or signed.
+        WithArcTangent,
+        /// The other way round: signed while the arc tangent is unsigned, else 90 to 270.
+        Opposite,
+    }
+    /// Numbers without a point handed to a macro.
+    macro_argument_numbers: MacroArgumentNumbers {
+        /// Least increments of their letter, unless numbers without a point are whole units anyway.
+        Increments,
+        /// As they are written.
+        AsWritten,
+    }
+    /// Variables numbered 9100 to 9999.
+    nine_thousand_variables: NineThousandVariables {
+        /// System variables or none.
+        Direct,
+        /// The variable whose number is held by the one 9000 below.
+        Indirect,
+    }
+    /// The order of axes behind the numbers of position variables.
+    position_variables: PositionVariables {
+        /// X, Z.
+        XThenZ,
+        /// X, Y, Z.
+        XThenYThenZ,
+    }
+    /// The variable of the Z workpiece shift.
+    work_shift_variables: WorkShiftVariables {
+        /// A hundred above that of X.
+        HundredApart,
+        /// The next one after that of X.
+        Neighbours,
+    }
+    /// What the clock variables count.
+    clock_variables: ClockVariables {
+        /// Milliseconds since power-on, and hours of automatic operation.
+        MillisecondsAndHours,
+        /// Seconds of this part, and seconds of cutting.
+        Seconds,
+    }
+    /// A call of a macro while a modal one is in force.
+    call_under_modal_call: CallUnderModalCall {
+        /// Both are in force, one inside the other.
+        Nests,
+        /// The modal one ends.
+        Cancels,
+    }
+    /// `G67` while no modal call is in force.
+    macro_cancel_without_call: MacroCancelWithoutCall {
+        /// Nothing happens.
+        Harmless,
+        /// An alarm, unless the parameter for it says otherwise.
+        ByParameter,
+    }
+    /// Arithmetic by `G65 H`.
+    type_a_macro: TypeAMacro {
+        /// There is none: H is an argument.
+        None,
+        /// A block with H is arithmetic.
+        ByWord,
+        /// A block with H is arithmetic when the parameter says so.
+        ByParameter,
+    }
+    /// A program number beyond four digits that was computed.
+    computed_program_number: ComputedProgramNumber {
+        /// The digits before the last four are the count, as when typed.
+        CountAndNumber,
+        /// Refused; so is a count given twice.
+        FourDigits,
+    }
+    /// `M98` without a program.
+    call_without_program: CallWithoutProgram {
+        /// Refused.
+        Alarm,
+        /// With the number of a first block, the program in work calls itself.
+        CallsItself,
+    }
     /// A thread while no spindle speed is commanded.
     thread_without_spindle: ThreadWithoutSpindle {
         /// Refused before the first pass.
@@ -441,6 +550,34 @@ pub struct Limits {
     pub offset_value_digits: u8,
     /// Deepest nesting of subprograms.
     pub call_depth_max: u8,
+    /// Deepest nesting of macro calls.
+    pub macro_depth_max: u8,
+    /// Deepest nesting of subprograms and macro calls together.
+    pub combined_depth_max: u8,
+    /// Deepest nesting of square brackets in an expression, functions included.
+    pub bracket_depth_max: u8,
+    /// Last common variable that power-off forgets; the first is 100.
+    pub common_variable_last: u32,
+    /// Last common variable that power-off keeps; the first is 500.
+    pub retained_variable_last: u32,
+    /// Highest repeat count of a call.
+    pub repeat_count_max: u32,
+    /// First of the programs that G codes call by parameter.
+    pub g_call_program: u32,
+    /// First of the programs that M codes call as macros by parameter.
+    pub m_call_program: u32,
+    /// First of the programs that M codes call as subprograms by parameter.
+    pub m_subprogram: u32,
+    /// First of the programs that single T codes call by parameter.
+    pub t_call_program: u32,
+    /// The program that every T word calls when the parameter says so.
+    pub t_program: u32,
+    /// The first of a thousand M codes that call the program of their own number; 0 for none.
+    pub direct_calling_m_code: u32,
+    /// Number of the alarm that a program raises with 0.
+    pub user_alarm_base: u32,
+    /// Highest number that may be added to it.
+    pub user_alarm_max: u32,
     /// Blocks without a move that may stand between a corner and the line it leads to.
     pub corner_gap_max: u8,
     /// The same between the lines of a drawing dimension.

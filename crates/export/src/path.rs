@@ -203,7 +203,8 @@ impl PathRecorder {
             | Action::Stop
             | Action::OptionalStop
             | Action::End
-            | Action::Message(_) => {}
+            | Action::Message(_)
+            | Action::Output(_) => {}
         }
         self.commands = self.commands.saturating_add(1);
     }

@@ -23,7 +23,13 @@ pub(crate) enum Flow {
     OptionalStop,
     End,
     Call,
+    /// A call of a program from outside the memory.
+    CallExternal,
+    /// A call of this program by a code that a parameter names.
+    CallProgram(u32),
     Return,
+    InterruptOn,
+    InterruptOff,
 }
 
 /// What still has to be done for a block when its cycle has run.
@@ -69,8 +75,7 @@ mod code {
     pub(super) const END_AND_REWIND: u32 = 30;
     pub(super) const CALL: u32 = 98;
     pub(super) const RETURN: u32 = 99;
-    /// Macro interrupt on and off, and the call of a program from outside: the control's own, not executed yet.
-    pub(super) const FOR_LATER: [u32; 3] = [96, 97, 198];
+    pub(super) const CALL_EXTERNAL: u32 = 198;
 }
 
 impl Core {
@@ -83,18 +88,27 @@ impl Core {
     ) -> Result<(), Alarm> {
         let word = &block.words[place];
         let number = self.whole(word, self.settings.auxiliary_max)?;
-        let is_flow = matches!(
-            number,
-            code::STOP | code::OPTIONAL_STOP | code::END | code::END_AND_REWIND | code::CALL | code::RETURN
-        );
+        let called = self.subprogram_of(number);
+        let is_call = called.is_some() || matches!(number, code::CALL | code::CALL_EXTERNAL);
+        let (interrupt_on, interrupt_off) = self.macros.interrupt_codes;
+        let is_flow = is_call
+            || matches!(
+                number,
+                code::STOP | code::OPTIONAL_STOP | code::END | code::END_AND_REWIND | code::RETURN
+            )
+            || number == interrupt_on
+            || number == interrupt_off;
         if is_flow && self.is_in_figure() {
             return Err(match number {
-                code::CALL | code::RETURN => self.refuse_in_figure(word),
+                _ if is_call => self.refuse_in_figure(word),
+                code::RETURN => self.refuse_in_figure(word),
                 _ => self.figure_without_end(),
             });
         }
-        if code::FOR_LATER.contains(&number) {
-            return Err(self.not_supported("auxiliary-of-the-control", word));
+        let calls_already =
+            matches!(auxiliary.flow, Some((Flow::Call | Flow::CallExternal | Flow::CallProgram(_), _)));
+        if is_call && self.settings.several_auxiliary && calls_already {
+            return Err(self.alarm("two-subprogram-calls", word));
         }
         if auxiliary.count > 0 && !self.joins(block, word, number, auxiliary)? {
             return Ok(());
@@ -110,6 +124,12 @@ impl Core {
         let stops_behind = self.control.policies.stopping_codes == StoppingCodes::BehindTheMove;
         let flow = |flow| Some((flow, place as u8));
         match number {
+            _ if called.is_some() => {
+                auxiliary.flow = called.and_then(|program| flow(Flow::CallProgram(program)))
+            }
+            code::CALL_EXTERNAL => auxiliary.flow = flow(Flow::CallExternal),
+            _ if number == interrupt_on => auxiliary.flow = flow(Flow::InterruptOn),
+            _ if number == interrupt_off => auxiliary.flow = flow(Flow::InterruptOff),
             code::STOP => auxiliary.flow = flow(Flow::Stop),
             code::OPTIONAL_STOP => auxiliary.flow = flow(Flow::OptionalStop),
             code::END | code::END_AND_REWIND => auxiliary.flow = flow(Flow::End),
@@ -230,7 +250,22 @@ impl Core {
     ) -> Result<(), Alarm> {
         let Some(waiting) = self.waiting.take() else { return Ok(()) };
         self.at = waiting.at;
+        if let Some(id) = self.cache.current {
+            // A call goes back to the block that comes next.
+            let next = self.cache.start(id);
+            self.go(next, environment)?;
+        }
         self.behind_move(waiting.auxiliary, waiting.depth, block, environment)
+    }
+}
+
+impl Core {
+    /// The subprogram that an M code calls by parameter, outside programs that were called that way.
+    fn subprogram_of(&self, number: u32) -> Option<u32> {
+        if !self.macros.calls.has_auxiliary() || self.is_called_by_code() {
+            return None;
+        }
+        self.macros.calls.subprogram(number)
     }
 }
 
@@ -238,7 +273,10 @@ impl Auxiliary {
     /// Letters that M words of the block take.
     pub(crate) fn letters(&self) -> u32 {
         match self.flow {
-            Some((Flow::Call, _)) => Block::bit(b'P') | Block::bit(b'L') | Block::bit(b'Q'),
+            Some((Flow::Call | Flow::CallExternal, _)) => {
+                Block::bit(b'P') | Block::bit(b'L') | Block::bit(b'Q')
+            }
+            Some((Flow::InterruptOn, _)) => Block::bit(b'P'),
             Some((Flow::Return, _)) => Block::bit(b'P') | Block::bit(b'L'),
             _ => 0,
         }

@@ -11,11 +11,15 @@ use turnwright_diagnostics::{Diagnostic, Severity};
 use turnwright_syntax::{Block, ExtentKind, Fault, FaultKind, Word, scan_block};
 
 use crate::Environment;
-use crate::auxiliary::Auxiliary;
+use crate::auxiliary::{Auxiliary, Flow};
 use crate::axes::Plane;
+use crate::cache::{Found, Kept};
 use crate::functions::{Function, FunctionId, Kind};
-use crate::machine::{BlockPlace, Core};
+use crate::index::Resume;
+use crate::machine::{BlockPlace, Core, Halt};
+use crate::macros::CallKind;
 use crate::report::Alarm;
+use crate::text::Cursor;
 use crate::words::Role;
 
 /// What a function's code may look at.
@@ -39,6 +43,9 @@ const ALWAYS: u32 = Block::bit(b'G')
 
 const AXES: u32 = Block::bit(b'X') | Block::bit(b'Z') | Block::bit(b'U') | Block::bit(b'W');
 
+/// The common variable that holds the T code for the program that it calls.
+const TOOL_VARIABLE: f64 = 149.0;
+
 /// Most G words in a block.
 const CODES_MAX: usize = 16;
 
@@ -61,10 +68,23 @@ struct Codes {
     motion: Option<Code>,
 }
 
+/// What a G code calls.
+#[derive(Clone, Copy)]
+enum MacroCall {
+    /// A program that the words name.
+    ByWords(CallKind),
+    /// A program that a parameter names.
+    ByCode((u32, CallKind)),
+}
+
 /// What reading the next block gave.
 enum Read {
     /// A block to be executed.
     Block,
+    /// A macro statement between these bytes of the line.
+    Statement(u32, u32),
+    /// A block that was kept.
+    Kept(Found),
     /// Nothing to execute on this line.
     Blank,
     /// The end of the record or of the text.
@@ -78,31 +98,153 @@ impl Core {
         &mut self,
         block: &mut Block,
         environment: &mut dyn Environment,
-    ) -> Result<(), Alarm> {
+    ) -> Result<(), Halt> {
+        if self.macros.interrupt.is_some() && environment.interrupts() {
+            self.interrupt(environment)?;
+        }
         match self.read_block(block, environment)? {
             Read::Blank => Ok(()),
-            Read::End => self.end_of_record(),
+            Read::End => Ok(self.end_of_record()?),
+            Read::Kept(found) => self.run_kept(found, block, environment),
+            Read::Statement(start, end) => self.read_statement(block, start..end, environment),
             Read::Block => {
                 self.count_block()?;
+                if block.computes && !self.keeps_variable_words(block) {
+                    let result = self.compute_words(block, environment);
+                    self.read_again_after(result, environment)?;
+                }
                 self.execute(block, environment)?;
-                if self.frames.is_empty() { Ok(()) } else { self.after_block(environment) }
+                if self.frames.is_empty() { Ok(()) } else { Ok(self.after_block(environment)?) }
             }
         }
     }
 
+    /// As [`Core::run_block`], where nobody can wait.
+    pub(crate) fn run_block_now(
+        &mut self,
+        block: &mut Block,
+        environment: &mut dyn Environment,
+    ) -> Result<(), Alarm> {
+        loop {
+            match self.run_block(block, environment) {
+                Ok(()) => return Ok(()),
+                Err(Halt::Alarm(alarm)) => return Err(alarm),
+                Err(Halt::Wait(_)) => self.moves_done = true,
+            }
+        }
+    }
+
+    /// A block that has to wait is read again when it goes on.
+    fn read_again_after(
+        &mut self,
+        result: Result<(), Halt>,
+        environment: &mut dyn Environment,
+    ) -> Result<(), Halt> {
+        if let Err(Halt::Wait(_)) = result {
+            let start = self.block_start();
+            self.go(start, environment)?;
+        }
+        result
+    }
+
+    /// A statement that is not kept: compiled, executed, forgotten.
+    #[cold]
+    fn read_statement(
+        &mut self,
+        block: &Block,
+        range: std::ops::Range<u32>,
+        environment: &mut dyn Environment,
+    ) -> Result<(), Halt> {
+        self.has_started = true;
+        self.expects_program_number = false;
+        self.count_block()?;
+        self.statement_stands_alone(block)?;
+        let mark = self.macros.machine.mark();
+        let statement = self.compile_statement(range)?;
+        let result = self.run_statement(statement, environment);
+        self.macros.machine.forget(mark);
+        self.read_again_after(result, environment)?;
+        if self.frames.is_empty() { Ok(()) } else { Ok(self.after_block(environment)?) }
+    }
+
+    /// Only a sequence number may stand before a macro statement.
+    fn statement_stands_alone(&mut self, block: &Block) -> Result<(), Alarm> {
+        for (place, word) in block.words.iter().enumerate() {
+            if word.address != b'N' {
+                return Err(self.alarm("macro-and-nc-mixed", word));
+            }
+            self.sequence_number(block, place)?;
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn run_kept(
+        &mut self,
+        found: Found,
+        block: &mut Block,
+        environment: &mut dyn Environment,
+    ) -> Result<(), Halt> {
+        self.at = self.cache.place(found.id);
+        self.count_block()?;
+        self.count_idle(1)?;
+        if found.skip != 0 && skips(found.skip, environment) {
+            return Ok(self.go_on(environment)?);
+        }
+        match found.kept {
+            Kept::Statement(statement) => self.run_statement(statement, environment)?,
+            Kept::Blank => self.go_on(environment)?,
+            Kept::Words { first, count, computes } => {
+                self.cache.refill(block, first, count);
+                if computes {
+                    self.macros.word_values.clear();
+                    block.resolve(|word, place| {
+                        let code = self.cache.code(first, place);
+                        self.word_value(word, code, environment)
+                    })?;
+                }
+                self.execute(block, environment)?;
+                if self.cache.current == Some(found.id) {
+                    self.go_on(environment)?;
+                }
+            }
+        }
+        if self.frames.is_empty() { Ok(()) } else { Ok(self.after_block(environment)?) }
+    }
+
+    #[inline]
     fn count_block(&mut self) -> Result<(), Alarm> {
         self.blocks_run += 1;
-        if self.blocks_run <= self.options.blocks_max {
-            return Ok(());
-        }
+        if self.blocks_run <= self.options.blocks_max { Ok(()) } else { Err(self.too_many_blocks()) }
+    }
+
+    #[cold]
+    fn too_many_blocks(&self) -> Alarm {
         let limit = self.options.blocks_max as i64;
         let diagnostic = Diagnostic::error("block-limit-reached").at(self.block_place()).with("limit", limit);
-        Err(self.finish(diagnostic))
+        self.finish(diagnostic)
+    }
+
+    /// Counts a block of a loop; commands given out start the count anew.
+    #[inline]
+    fn count_idle(&mut self, weight: u64) -> Result<(), Alarm> {
+        self.idle_blocks += weight;
+        if self.idle_blocks <= self.options.idle_blocks_max { Ok(()) } else { Err(self.idles_too_long()) }
+    }
+
+    #[cold]
+    fn idles_too_long(&self) -> Alarm {
+        let limit = self.options.idle_blocks_max as i64;
+        let diagnostic = Diagnostic::error("loop-without-motion").at(self.block_place()).with("limit", limit);
+        self.finish(diagnostic)
     }
 
     /// Reads the next block that has something to execute into `block`.
     #[inline]
     fn read_block(&mut self, block: &mut Block, environment: &mut dyn Environment) -> Result<Read, Alarm> {
+        if let Some(id) = self.cache.current {
+            return Ok(Read::Kept(self.cache.found(id)));
+        }
         if self.from == 0 {
             match self.text.next(environment) {
                 Ok(Some(line)) => self.line = line,
@@ -113,14 +255,20 @@ impl Core {
                 Err(_) => return Err(Box::new(Diagnostic::error("file-unreadable"))),
             }
         }
+        let source = self.text.source();
+        let is_hot = self.cache.is_hot(source, self.line.offset);
+        if is_hot && let Some(found) = self.cache.find(self.place_in_line()) {
+            return Ok(Read::Kept(found));
+        }
         let bytes = self.text.bytes(&self.line);
         let length = bytes.len();
+        self.block_from = self.from;
         let next = scan_block(bytes, self.from, block);
         let last_byte = block.words.last().map_or(length as u32, |word| word.end);
         let first_byte = block.words.first().map_or(self.from as u32, |word| word.start);
         self.from = if next < length { next } else { 0 };
         self.at = BlockPlace {
-            source: self.at.source,
+            source,
             line: self.line.number,
             line_offset: self.line.offset,
             first_byte,
@@ -136,6 +284,16 @@ impl Core {
             // Before the first block this is the leader of the tape.
             return Ok(if self.has_started || block.is_end_of_text { Read::End } else { Read::Blank });
         }
+        if let Some((start, end)) = block.macro_statement {
+            (self.at.first_byte, self.at.last_byte) = (start, end);
+        }
+        if is_hot {
+            self.count_idle(crate::limits::IDLE_READ_BLOCKS)?;
+            if let Some(found) = self.keep(block, environment)? {
+                return Ok(Read::Kept(found));
+            }
+        }
+        self.cache.forget_way();
         if block.skip.whole | block.skip.rest != 0 {
             self.apply_skips(block, environment)?;
         }
@@ -143,9 +301,57 @@ impl Core {
             self.report_faults(block)?;
         }
         if let Some((start, end)) = block.macro_statement {
-            return Err(self.refuse_macro(start, end));
+            return Ok(Read::Statement(start, end));
         }
         Ok(if block.words.is_empty() { Read::Blank } else { Read::Block })
+    }
+
+    /// Where the next block begins, its line being read already.
+    fn place_in_line(&self) -> Resume {
+        let source = self.text.source();
+        let line = Cursor { source, offset: self.line.offset, line: self.line.number };
+        Resume { line, from: self.from }
+    }
+
+    /// Keeps a block of a loop, if nothing about it needs a second look.
+    #[cold]
+    fn keep(&mut self, block: &Block, environment: &mut dyn Environment) -> Result<Option<Found>, Alarm> {
+        let is_plain = block.skip.rest == 0
+            && block.extents.iter().all(|extent| extent.kind != ExtentKind::Name)
+            && block.faults.iter().all(|fault| fault.kind.is_harmless());
+        if !is_plain || (block.skip.whole != 0 && skips(block.skip.whole, environment)) {
+            return Ok(None);
+        }
+        self.report_faults(block)?;
+        let behind = if self.from == 0 {
+            Resume { line: self.text.cursor(), from: 0 }
+        } else {
+            Resume { from: self.from, ..self.place_in_line() }
+        };
+        let start = Resume { from: self.block_from, ..self.place_in_line() };
+        let mark = self.macros.machine.mark();
+        let id = if let Some((from, to)) = block.macro_statement {
+            self.statement_stands_alone(block)?;
+            let statement = self.compile_statement(from..to)?;
+            let frame = self.kept_frame(block, start, behind);
+            self.cache.keep_statement(Kept::Statement(statement), frame.of(self.text.bytes(&self.line)))
+        } else if block.words.is_empty() {
+            let frame = self.kept_frame(block, start, behind);
+            self.cache.keep_statement(Kept::Blank, frame.of(self.text.bytes(&self.line)))
+        } else {
+            let mut codes = Vec::new();
+            self.compile_words(block, &mut codes)?;
+            let frame = self.kept_frame(block, start, behind);
+            self.cache.keep_words(block, &codes, frame.of(self.text.bytes(&self.line)))
+        };
+        if id.is_none() {
+            self.macros.machine.forget(mark);
+        }
+        Ok(id.map(|id| self.cache.found(id)))
+    }
+
+    fn kept_frame(&self, block: &Block, start: Resume, behind: Resume) -> crate::cache::Place {
+        crate::cache::Place { at: self.at, start, behind, skip: block.skip.whole }
     }
 
     #[cold]
@@ -153,11 +359,9 @@ impl Core {
         if block.skip.rest != 0 && self.control.policies.skip_inside_block == SkipInsideBlock::Alarm {
             return Err(self.skip_inside_block(block));
         }
-        let is_on =
-            |marks: u16| (1..=9u8).any(|switch| marks & (1 << switch) != 0 && environment.skips(switch));
-        if is_on(block.skip.whole) {
+        if skips(block.skip.whole, environment) {
             block.clear();
-        } else if is_on(block.skip.rest) {
+        } else if skips(block.skip.rest, environment) {
             let kept = usize::from(block.skip.words_kept);
             let from = block.words.get(kept).map_or(u32::MAX, |word| word.start);
             block.faults.retain(|fault| fault.start < from);
@@ -228,20 +432,6 @@ impl Core {
         self.finish(Diagnostic::alarm(key).at(self.at.span(fault.start, fault.end)).with("word", quote))
     }
 
-    #[cold]
-    fn refuse_macro(&self, start: u32, end: u32) -> Alarm {
-        let bytes = self.text.bytes(&self.line);
-        if let Err(fault) = turnwright_syntax::parse_statement(bytes, start..end) {
-            let quote = self.quote(start, end);
-            let diagnostic =
-                Diagnostic::alarm("macro-syntax").at(self.at.span(fault.place.start, fault.place.end));
-            return self.finish(diagnostic.with("word", quote).with("expected", fault.expected));
-        }
-        let quote = self.quote(start, end);
-        let diagnostic = Diagnostic::error("macro-not-supported-yet").at(self.at.span(start, end));
-        self.finish(diagnostic.with("word", quote))
-    }
-
     /// Executes the words of a block.
     #[inline]
     pub(crate) fn execute(&mut self, block: &Block, environment: &mut dyn Environment) -> Result<(), Alarm> {
@@ -250,6 +440,14 @@ impl Core {
             return self.run_data_list(block);
         }
         let depth = self.frames.len();
+        if !self.macros.modal_calls.is_empty() && self.call_for_block(block, environment)? {
+            return Ok(());
+        }
+        if (self.macros.calls.has_auxiliary() || self.macros.calls.has_tools())
+            && self.call_by_word(block, environment)?
+        {
+            return Ok(());
+        }
         if block.words.len() as u32 > block.present().count_ones() {
             self.repeated_addresses(block)?;
         }
@@ -259,7 +457,11 @@ impl Core {
             match word.address {
                 b'X' | b'Z' | b'U' | b'W' | b'F' => {}
                 _ if word.comma => {}
-                b'G' => self.sort_code(block, place, &mut codes)?,
+                b'G' => {
+                    if let Some(call) = self.sort_code(block, place, &mut codes)? {
+                        return self.call_macro(block, word, call, environment);
+                    }
+                }
                 b'M' => self.sort_auxiliary(block, place, &mut auxiliary)?,
                 b'N' => self.sequence_number(block, place)?,
                 b'B' | b'D' | b'H' => self.modal.in_force.rare_word(word),
@@ -278,6 +480,9 @@ impl Core {
         }
         if codes.one_shot.is_some() && codes.motion.is_some() {
             self.one_shot_with_motion(block, &codes)?;
+        }
+        if self.macros.calls.any_tool.is_some() {
+            self.call_by_tool(block, &mut auxiliary)?;
         }
         for (id, word) in codes.modes.iter().take(codes.mode_count) {
             self.run_mode(*id, &block.words[usize::from(*word)], block, environment)?;
@@ -300,6 +505,7 @@ impl Core {
         }
         auxiliary.emit_before(self);
         let waiting_corner = self.corner.is_some();
+        let mut moves = codes.one_shot.is_some() && block.present() & AXES != 0;
         let call = |word, code, environment| Call { block, environment, code, word };
         match codes.one_shot {
             Some(Code { id, code, word }) => {
@@ -316,6 +522,7 @@ impl Core {
             None => {
                 let triggered = self.is_triggered(block, function, other_letters)
                     || (function.repeats && self.repeats_single_cycle(block, &auxiliary));
+                moves = triggered;
                 if triggered {
                     if waiting_corner && !function.in_figure {
                         return Err(self.corner_interrupted());
@@ -332,10 +539,12 @@ impl Core {
             self.check_open_path()?;
         }
         if auxiliary.acts_behind() | self.stops_once {
-            self.behind_move(auxiliary, depth, block, environment)
-        } else {
-            Ok(())
+            self.behind_move(auxiliary, depth, block, environment)?;
         }
+        if moves && !self.macros.modal_calls.is_empty() && !self.is_capturing() {
+            self.call_after_move(environment)?;
+        }
+        Ok(())
     }
 
     /// Whether the words of a block make a motion in force run; `other_letters` belong to modes and M words.
@@ -347,9 +556,19 @@ impl Core {
     }
 
     #[inline]
-    fn sort_code(&mut self, block: &Block, place: usize, codes: &mut Codes) -> Result<(), Alarm> {
+    fn sort_code(
+        &mut self,
+        block: &Block,
+        place: usize,
+        codes: &mut Codes,
+    ) -> Result<Option<MacroCall>, Alarm> {
         let word = &block.words[place];
         let code = self.code(word)?;
+        if let Some(call) = self.macros.calls.preparatory(code)
+            && !self.is_called_by_code()
+        {
+            return Ok(Some(MacroCall::ByCode(call)));
+        }
         let Some(id) = self.dispatch.function(code) else { return Err(self.refuse_code(code, word)) };
         let function = id.get();
         if !function.in_figure && self.is_in_figure() {
@@ -360,6 +579,7 @@ impl Core {
         }
         let new = Code { id, code, word: place as u8 };
         match function.kind {
+            Kind::Call(kind) => return Ok(Some(MacroCall::ByWords(kind))),
             Kind::Mode(_) => {
                 let group = self.dispatch.group(id);
                 for (earlier, first) in &codes.modes[..codes.mode_count] {
@@ -385,7 +605,46 @@ impl Core {
                 }
             }
         }
-        Ok(())
+        Ok(None)
+    }
+
+    /// A block whose G code calls a macro.
+    #[cold]
+    fn call_macro(
+        &mut self,
+        block: &Block,
+        word: &Word,
+        call: MacroCall,
+        environment: &mut dyn Environment,
+    ) -> Result<(), Alarm> {
+        self.expects_program_number = false;
+        match call {
+            MacroCall::ByWords(kind) => self.macro_call(block, word, kind, environment),
+            MacroCall::ByCode(call) => self.call_by_code(block, word, call, environment),
+        }
+    }
+
+    /// A block whose first word is an M code that calls a macro, or whose T word calls one. False when it is none.
+    #[cold]
+    fn call_by_word(&mut self, block: &Block, environment: &mut dyn Environment) -> Result<bool, Alarm> {
+        if self.is_called_by_code() || self.is_capturing() {
+            return Ok(false);
+        }
+        let first = block.words.iter().find(|word| word.address != b'N');
+        if let Some(word) = first
+            && word.address == b'M'
+            && let Some(program) = self.macros.calls.auxiliary(self.whole(word, 99_999_999)?)
+        {
+            self.call_by_code(block, word, (program, CallKind::Simple), environment)?;
+            return Ok(true);
+        }
+        let Some(word) = block.word(b'T') else { return Ok(false) };
+        let tool = self.whole(word, 99_999_999)?;
+        if let Some(program) = self.macros.calls.tool(tool) {
+            self.call_by_code(block, word, (program, CallKind::Simple), environment)?;
+            return Ok(true);
+        }
+        Ok(false)
     }
 
     /// The same address twice: the last counts, unless the parameter makes it an alarm.
@@ -510,6 +769,32 @@ impl Core {
         auxiliary.spindle.is_some() || codes.mode_count > 0
     }
 
+    /// By parameter a T word calls a program, which finds the number in a common variable.
+    #[cold]
+    fn call_by_tool(&mut self, block: &Block, auxiliary: &mut Auxiliary) -> Result<(), Alarm> {
+        let (Some(program), Some(word)) = (self.macros.calls.any_tool, block.word(b'T')) else {
+            return Ok(());
+        };
+        if self.is_called_by_code() || self.is_capturing() {
+            return Ok(());
+        }
+        let tool = self.whole(word, 99_999_999)?;
+        let held = self.macros.variables.slot(TOOL_VARIABLE);
+        if let Some(slot) = held {
+            self.macros.variables.set(slot, f64::from(tool));
+        }
+        if auxiliary.has_flow() {
+            return Err(self.alarm("two-subprogram-calls", word));
+        }
+        let place = block.words.iter().position(|other| other.start == word.start).unwrap_or(0);
+        auxiliary.flow = Some((Flow::CallProgram(program), place as u8));
+        Ok(())
+    }
+
+    fn tool_calls_program(&self, auxiliary: &Auxiliary) -> bool {
+        matches!(auxiliary.flow, Some((Flow::CallProgram(program), _)) if Some(program) == self.macros.calls.any_tool)
+    }
+
     #[cold]
     fn speed_and_tool(&mut self, block: &Block, codes: &Codes, auxiliary: &Auxiliary) -> Result<(), Alarm> {
         if self.is_capturing() {
@@ -521,7 +806,9 @@ impl Core {
         {
             self.speed_word(word)?;
         }
-        if let Some(word) = block.word(b'T') {
+        if let Some(word) = block.word(b'T')
+            && !self.tool_calls_program(auxiliary)
+        {
             let refuses = self.settings.offsets.refuses_tool_in_setting;
             if refuses && codes.one_shot.is_some_and(|one_shot| one_shot.id.get().sets_data) {
                 return Err(self.alarm("tool-not-allowed-here", word));
@@ -536,7 +823,7 @@ impl Core {
     }
 
     #[inline]
-    fn sequence_number(&mut self, block: &Block, place: usize) -> Result<(), Alarm> {
+    pub(crate) fn sequence_number(&mut self, block: &Block, place: usize) -> Result<(), Alarm> {
         let word = &block.words[place];
         if place > 0 && block.words[place - 1].address != b'O' {
             self.warn("sequence-not-at-start", word);
@@ -578,7 +865,7 @@ impl Core {
             return Err(self.alarm("program-number-illegal", word));
         }
         self.program = Some(number);
-        self.program_start = self.line_cursor();
+        self.program_start = self.block_start();
         Ok(())
     }
 
@@ -632,6 +919,11 @@ impl Core {
 }
 
 const SPEED_OR_TOOL: u32 = Block::bit(b'S') | Block::bit(b'T');
+
+/// Whether one of the switches in `marks` is on.
+fn skips(marks: u16, environment: &dyn Environment) -> bool {
+    (1..=9u8).any(|switch| marks & (1 << switch) != 0 && environment.skips(switch))
+}
 
 /// Ways of writing that a file has everywhere or nowhere.
 const fn is_habit(kind: FaultKind) -> bool {

@@ -82,18 +82,17 @@ impl Core {
         &mut self,
         range: &FigureRange,
         call: &mut Call<'_>,
-    ) -> Result<(Cursor, Cursor), Alarm> {
-        let here = self.line_cursor();
+    ) -> Result<(Resume, Resume), Alarm> {
+        let here = self.block_start();
         let found = self.find_sequence(range.first, here, call.environment)?;
         let Some((first, firsts)) = found else {
             return Err(self.range_alarm(range.first, range.first_place));
         };
-        let found = self.find_sequence(
-            range.last,
-            Cursor { offset: first.offset.wrapping_sub(1), ..first },
-            call.environment,
-        )?;
-        let behind = found.filter(|(last, _)| last.offset >= first.offset);
+        // The first block may be the last one too.
+        let before = Cursor { offset: first.line.offset.wrapping_sub(1), ..first.line };
+        let before = Resume { line: before, from: usize::MAX };
+        let found = self.find_sequence(range.last, before, call.environment)?;
+        let behind = found.filter(|(last, _)| last.position() >= first.position());
         let Some((last, lasts)) = behind else {
             if found.is_none() {
                 return Err(self.range_alarm(range.last, range.last_place));
@@ -108,7 +107,7 @@ impl Core {
                 self.report_duplicate(number, place)?;
             }
         }
-        if last.line == self.at.line {
+        if last.position() == self.block_start().position() {
             // The cycle would be part of its own figure.
             let mut diagnostic = Diagnostic::alarm("figure-code-illegal").at(range.last_place);
             diagnostic = diagnostic.with("word", format!("Q{}", range.last));
@@ -176,7 +175,7 @@ impl Core {
         let cycle_line = self.line_cursor();
         let (modal, at, tip) = (self.modal.clone(), self.at, self.tip);
         self.capture = Some(Capture { elements: Vec::new(), range });
-        self.go(Resume { line: first, from: 0 }, call.environment)?;
+        self.go(first, call.environment)?;
         let read = self.read_figure(range, call);
         let behind = self.resume();
         let capture = self.capture.take();
@@ -187,7 +186,7 @@ impl Core {
         if let Ok(Some(line)) = self.text.next(call.environment) {
             self.line = line;
         }
-        let stands_before = first.offset < cycle_line.offset;
+        let stands_before = first.line.offset < cycle_line.offset;
         if stands_before {
             // Going on behind such a figure would run the cycle for ever.
             self.warn_block("behaviour-uncertain");
@@ -214,7 +213,7 @@ impl Core {
         let mut block = Block::new();
         let mut first = None;
         loop {
-            self.run_block(&mut block, call.environment)?;
+            self.run_block_now(&mut block, call.environment)?;
             if self.at.sequence.is_none() && block.is_empty() {
                 continue;
             }
@@ -243,12 +242,12 @@ impl Core {
     /// Looks at what stands between the cycle block and its figure: it never runs. True when that is nothing.
     fn look_between(
         &mut self,
-        first: Cursor,
+        first: Resume,
         range: &FigureRange,
         call: &mut Call<'_>,
     ) -> Result<bool, Alarm> {
         let here = self.resume();
-        if here.from > 0 || first.offset < here.line.offset {
+        if here.from > 0 || first.line.offset < here.line.offset {
             return Ok(false);
         }
         let mut text = Text::new(self.at.source);
@@ -257,7 +256,7 @@ impl Core {
         let mut is_adjacent = true;
         loop {
             let line = match text.next(call.environment) {
-                Ok(Some(line)) if line.offset < first.offset => line,
+                Ok(Some(line)) if line.offset < first.line.offset => line,
                 Ok(_) => return Ok(is_adjacent),
                 Err(_) => return Err(Box::new(Diagnostic::error("file-unreadable"))),
             };

@@ -17,6 +17,7 @@
 mod auxiliary;
 mod axes;
 mod block;
+mod cache;
 mod coordinates;
 mod corner;
 mod data_list;
@@ -24,8 +25,10 @@ mod figure;
 mod flow;
 mod functions;
 mod in_force;
+mod index;
 pub mod limits;
 mod machine;
+mod macros;
 mod modal;
 mod moves;
 mod offsets;
@@ -45,6 +48,7 @@ mod zeros;
 
 pub use functions::implemented_functions;
 pub use in_force::GROUPS;
+pub use index::ProgramName;
 pub use machine::{Interpreter, Options, Step, SyncReason};
 pub use parts::Parts;
 pub use punch::{DataFault, DataImport, export_offsets, export_work_zeros, import_data};
@@ -55,7 +59,19 @@ use turnwright_diagnostics::SourceId;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadFault;
 
-/// The world outside: texts and switches.
+/// A date and a time of day, as the machine's calendar has them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names are the documentation")]
+pub struct DateTime {
+    pub year: u16,
+    pub month: u8,
+    pub day: u8,
+    pub hour: u8,
+    pub minute: u8,
+    pub second: u8,
+}
+
+/// The world outside: texts, switches and signals.
 pub trait Environment {
     /// Reads bytes of a text from an offset on; 0 bytes at its end.
     ///
@@ -65,6 +81,38 @@ pub trait Environment {
 
     /// Whether a block skip switch (1 to 9) is on. Asked when a block is read.
     fn skips(&self, switch: u8) -> bool;
+
+    /// A program that is not in the text in work: another file of the control's memory.
+    fn program(&mut self, name: ProgramName<'_>) -> Option<SourceId> {
+        let _ = name;
+        None
+    }
+
+    /// The calendar of the machine; `None` when there is none to ask, and the variables of date and time are 0.
+    fn now(&self) -> Option<DateTime> {
+        None
+    }
+
+    /// Milliseconds since power-on.
+    fn uptime_ms(&self) -> u64 {
+        0
+    }
+
+    /// A signal from the machine's own logic to macros, 0 to 31.
+    fn macro_input(&self, signal: u8) -> bool {
+        let _ = signal;
+        false
+    }
+
+    /// A signal from macros to the machine's own logic, 0 to 31.
+    fn set_macro_output(&mut self, signal: u8, is_on: bool) {
+        let _ = (signal, is_on);
+    }
+
+    /// Whether a signal asks for the program of a macro interrupt. Asked before each block while one is allowed.
+    fn interrupts(&mut self) -> bool {
+        false
+    }
 
     /// Whether the optional stop is on.
     fn stops_optionally(&self) -> bool {

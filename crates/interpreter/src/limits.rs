@@ -3,6 +3,19 @@
 /// Blocks executed in one run (`block-limit-reached`).
 pub const BLOCKS_MAX: u64 = 30_000_000;
 
+/// Blocks of loops executed without any command (`loop-without-motion`). A block that has to be read anew counts
+/// for [`IDLE_READ_BLOCKS`].
+pub const IDLE_BLOCKS_MAX: u64 = 16_000_000;
+
+/// What a block of a loop that is not kept counts for, against the limit above.
+pub const IDLE_READ_BLOCKS: u64 = 10;
+
+/// Memory for blocks that are kept because they run again; beyond it they are read anew.
+pub const CACHE_BYTES_MAX: usize = 16 * 1024 * 1024;
+
+/// Texts up to this length are held in memory once a program jumps in them.
+pub const HELD_TEXT_BYTES_MAX: u64 = 4 * 1024 * 1024;
+
 /// Moves made by one cycle block (`cycle-move-limit`).
 pub const CYCLE_MOVES_MAX: u64 = 5_000_000;
 

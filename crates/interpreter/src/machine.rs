@@ -12,14 +12,17 @@ use turnwright_units::{Displacement, Length, Position, Radius, SurfaceSpeed, Wor
 use crate::Environment;
 use crate::auxiliary::Waiting;
 use crate::axes::Axes;
+use crate::cache::Cache;
 use crate::corner::OpenPath;
 use crate::data_list::{DataList, ToolLife};
 use crate::figure::FigureRange;
-use crate::flow::{Frame, ProgramIndex};
+use crate::flow::{Frame, Resume};
 use crate::functions::reference_return::Homing;
 use crate::functions::{Dispatch, FunctionId};
 use crate::in_force::{InForce, MOTION};
+use crate::index::ProgramIndex;
 use crate::limits;
+use crate::macros::Macros;
 use crate::modal::{Modal, Settings, SingleCycle, SpeedMode};
 use crate::moves::ActiveCycle;
 use crate::offsets::{OffsetInForce, OffsetTables};
@@ -48,6 +51,23 @@ pub enum Step {
 pub enum SyncReason {
     /// Cycle start after a program stop.
     CycleStart,
+    /// The end of the moves given out so far: a macro asks where the axes are.
+    MovesDone,
+}
+
+/// Why a block was not executed to its end.
+#[derive(Debug)]
+pub(crate) enum Halt {
+    /// The control stops.
+    Alarm(Alarm),
+    /// The block runs again when the world has caught up.
+    Wait(SyncReason),
+}
+
+impl From<Alarm> for Halt {
+    fn from(alarm: Alarm) -> Self {
+        Self::Alarm(alarm)
+    }
 }
 
 /// What the caller may choose for a run.
@@ -55,11 +75,13 @@ pub enum SyncReason {
 pub struct Options {
     /// Blocks executed before the run is stopped.
     pub blocks_max: u64,
+    /// Blocks of loops executed without any command before the run is stopped.
+    pub idle_blocks_max: u64,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { blocks_max: limits::BLOCKS_MAX }
+        Self { blocks_max: limits::BLOCKS_MAX, idle_blocks_max: limits::IDLE_BLOCKS_MAX }
     }
 }
 
@@ -107,11 +129,15 @@ pub(crate) struct Core {
     pub(crate) from: usize,
     pub(crate) at: BlockPlace,
     pub(crate) program: Option<u32>,
-    pub(crate) program_start: Cursor,
+    pub(crate) program_start: Resume,
     /// The first line of the text that the run began with.
     pub(crate) text_start: Cursor,
+    /// First byte of the block in work in its line.
+    pub(crate) block_from: usize,
     pub(crate) frames: Vec<Frame>,
-    pub(crate) index: Option<ProgramIndex>,
+    pub(crate) indexes: Vec<(SourceId, ProgramIndex)>,
+    pub(crate) cache: Cache,
+    pub(crate) macros: Macros,
     pub(crate) out: VecDeque<Command>,
     /// End of the last move given out.
     pub(crate) tip: Position<WorkTip>,
@@ -140,6 +166,10 @@ pub(crate) struct Core {
     /// Moves meet in another way, and no command told it.
     pub(crate) has_untold_path_mode: bool,
     pub(crate) blocks_run: u64,
+    /// Blocks of loops executed since the last command.
+    pub(crate) idle_blocks: u64,
+    /// The moves given out so far are done: the caller was told to wait for them.
+    pub(crate) moves_done: bool,
     pub(crate) cycle_moves: u64,
     pub(crate) has_started: bool,
     /// The next block may hold the number of its program.
@@ -178,6 +208,7 @@ impl Interpreter {
             control.policies.decimal_rule == turnwright_control::policy::DecimalRule::AlwaysCalculator;
         let settings = Settings::new(&control.parameters, always, control.limits.number_digits);
         let dispatch = Dispatch::new(&control);
+        let macros = Macros::new(&control);
         let machine = setup.machine()?;
         let strokes = Strokes::new(&control.parameters);
         let zeros = Zeros::new(&control, setup, &machine)?;
@@ -234,11 +265,14 @@ impl Interpreter {
             from: 0,
             at: BlockPlace { source, line: 1, ..BlockPlace::default() },
             program: None,
-            program_start: start,
+            program_start: Resume { line: start, from: 0 },
             text_start: start,
             parts,
+            block_from: 0,
             frames: Vec::new(),
-            index: None,
+            indexes: Vec::new(),
+            cache: Cache::default(),
+            macros,
             out: VecDeque::new(),
             active: None,
             waiting: None,
@@ -252,6 +286,8 @@ impl Interpreter {
             has_untold_place: false,
             has_untold_path_mode: false,
             blocks_run: 0,
+            idle_blocks: 0,
+            moves_done: true,
             cycle_moves: 0,
             has_started: false,
             expects_program_number: true,
@@ -307,6 +343,8 @@ impl Interpreter {
     pub fn step(&mut self, environment: &mut dyn Environment) -> Step {
         loop {
             if let Some(command) = self.core.out.pop_front() {
+                self.core.idle_blocks = 0;
+                self.core.moves_done = false;
                 return Step::Emit(command);
             }
             if let Some(reason) = self.core.sync.take() {
@@ -319,16 +357,23 @@ impl Interpreter {
                 return Step::End;
             }
             let result = if self.core.active.is_some() {
-                self.core.next_cycle_move()
+                self.core.next_cycle_move().map_err(Halt::from)
             } else if self.core.is_due() {
-                self.core.finish_waiting(&self.block, environment)
+                self.core.finish_waiting(&self.block, environment).map_err(Halt::from)
             } else {
                 self.core.run_block(&mut self.block, environment)
             };
-            if let Err(alarm) = result {
-                self.core.is_over = true;
-                self.core.active = None;
-                self.alarm = Some(alarm);
+            match result {
+                Ok(()) => {}
+                Err(Halt::Wait(reason)) => {
+                    self.core.moves_done = true;
+                    return Step::NeedSync(reason);
+                }
+                Err(Halt::Alarm(alarm)) => {
+                    self.core.is_over = true;
+                    self.core.active = None;
+                    self.alarm = Some(alarm);
+                }
             }
         }
     }

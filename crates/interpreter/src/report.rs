@@ -33,9 +33,17 @@ impl Core {
         self.at.span(self.at.first_byte, self.at.last_byte)
     }
 
+    /// The line of the block in work.
+    pub(crate) fn line_bytes(&self) -> &[u8] {
+        match self.cache.current {
+            Some(id) => self.cache.line(id),
+            None => self.text.bytes(&self.line),
+        }
+    }
+
     /// The text of some bytes of the line in work, for a message.
     pub(crate) fn quote(&self, start: u32, end: u32) -> String {
-        let line = self.text.bytes(&self.line);
+        let line = self.line_bytes();
         let (start, end) = ((start as usize).min(line.len()), (end as usize).min(line.len()));
         let text: String = String::from_utf8_lossy(&line[start..end]).chars().take(40).collect();
         text.trim().to_string()

@@ -14,6 +14,8 @@ use turnwright_canon::{Action, PathMode, SpindleState};
 use turnwright_control::policy::SpeedLimitAtReset;
 use turnwright_units::Length;
 
+use crate::cache::Cache;
+use crate::flow::Resume;
 use crate::functions::FunctionId;
 use crate::in_force::{GROUPS, MOTION};
 use crate::machine::{Core, Interpreter};
@@ -123,6 +125,8 @@ impl Core {
         self.data_list = None;
         self.stops_once = false;
         self.frames.clear();
+        self.cache.leave();
+        self.macros.reset(&self.control.parameters);
         self.roughed.clear();
         self.finished_first.clear();
         self.reset_offset();
@@ -131,8 +135,10 @@ impl Core {
     /// Goes back to the first block of the text.
     fn rewind(&mut self) {
         self.text.jump(self.text_start);
+        self.cache.leave();
+        self.cache.enter(self.text_start.source);
         self.from = 0;
-        self.program_start = self.text_start;
+        self.program_start = Resume { line: self.text_start, from: 0 };
         self.has_started = false;
         self.expects_program_number = true;
     }
@@ -151,7 +157,9 @@ impl Interpreter {
         self.core.has_untold_place |= self.core.tip != place;
         // The text may have been edited meanwhile.
         self.core.text = Text::new(self.core.text_start.source);
-        self.core.index = None;
+        self.core.indexes.clear();
+        self.core.cache = Cache::default();
+        self.core.macros.machine.forget(0);
         self.core.rewind();
         self.start_again();
     }
@@ -170,5 +178,6 @@ impl Interpreter {
         }
         self.core.blocks_run = 0;
         self.core.cycle_moves = 0;
+        self.core.idle_blocks = 0;
     }
 }

@@ -6,6 +6,7 @@
 use turnwright_diagnostics::SourceId;
 use turnwright_syntax::find_line_end;
 
+use crate::limits::HELD_TEXT_BYTES_MAX;
 use crate::{Environment, ReadFault};
 
 /// Longest line that is read; a control takes a few hundred characters.
@@ -50,6 +51,10 @@ pub(crate) struct Text {
     is_last: bool,
     /// The head of a line that is longer than the window.
     head: Vec<u8>,
+    /// Texts whose length is known and small: they are held as a whole once they are jumped in.
+    held: Vec<SourceId>,
+    /// The window begins at the start of the text and lets go of nothing.
+    is_held: bool,
 }
 
 impl Text {
@@ -63,7 +68,22 @@ impl Text {
             next_line: 1,
             is_last: false,
             head: Vec::new(),
+            held: Vec::new(),
+            is_held: false,
         }
+    }
+
+    /// The length of a text is known: a small one is held as a whole from the next jump on.
+    pub(crate) fn expect(&mut self, source: SourceId, bytes: u64) {
+        if bytes <= HELD_TEXT_BYTES_MAX && !self.held.contains(&source) {
+            self.held.push(source);
+        }
+    }
+
+    /// The text in work.
+    #[inline]
+    pub(crate) fn source(&self) -> SourceId {
+        self.source
     }
 
     /// Where the next line begins.
@@ -75,14 +95,17 @@ impl Text {
     pub(crate) fn jump(&mut self, to: Cursor) {
         self.next_line = to.line;
         let end = self.base + self.filled as u64;
-        if to.source == self.source && (self.base..=end).contains(&to.offset) {
+        let is_near = (self.base..=end).contains(&to.offset) || (self.is_held && self.base <= to.offset);
+        if to.source == self.source && is_near {
             self.at = (to.offset - self.base) as usize;
         } else {
             self.source = to.source;
             self.filled = 0;
-            self.base = to.offset;
-            self.at = 0;
             self.is_last = false;
+            self.is_held = self.held.contains(&to.source);
+            // Of a held text everything before the place is read too, once.
+            self.base = if self.is_held { 0 } else { to.offset };
+            self.at = (to.offset - self.base) as usize;
         }
     }
 
@@ -96,6 +119,12 @@ impl Text {
     /// Reads the next line; `None` behind the last.
     #[inline]
     pub(crate) fn next(&mut self, environment: &mut dyn Environment) -> Result<Option<Line>, ReadFault> {
+        while self.at > self.filled {
+            if self.is_last {
+                return Ok(None);
+            }
+            self.fill(environment)?;
+        }
         loop {
             if let Some(end) = find_line_end(&self.buffer[self.at..self.filled], self.is_last) {
                 let line = self.line(self.at + end.start);
@@ -140,10 +169,12 @@ impl Text {
 
     /// Lets go of what was read and reads more behind what is left.
     fn fill(&mut self, environment: &mut dyn Environment) -> Result<(), ReadFault> {
-        self.buffer.copy_within(self.at..self.filled, 0);
-        self.base += self.at as u64;
-        self.filled -= self.at;
-        self.at = 0;
+        if !self.is_held {
+            self.buffer.copy_within(self.at..self.filled, 0);
+            self.base += self.at as u64;
+            self.filled -= self.at;
+            self.at = 0;
+        }
         let wanted = self.filled + WINDOW_BYTES;
         if self.buffer.len() < wanted {
             self.buffer.resize(wanted, 0);

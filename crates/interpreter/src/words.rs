@@ -45,12 +45,8 @@ impl Core {
     pub(crate) fn number(&self, word: &Word) -> Result<Decimal, Alarm> {
         match word.value {
             Value::Number(number) => Ok(number),
-            Value::Expression { .. } => {
-                // An error of ours: the control itself would go on.
-                let mut alarm = self.alarm("macro-not-supported-yet", word);
-                alarm.severity = turnwright_diagnostics::Severity::Error;
-                Err(alarm)
-            }
+            // Expressions were computed before; what is left is a name where no name can stand.
+            Value::Expression { .. } => Err(self.alarm("macro-expression-format", word)),
             Value::Missing => Err(self.alarm("address-without-value", word)),
         }
     }
@@ -67,7 +63,24 @@ impl Core {
                 return Ok(Length::from_nm(nm));
             }
         }
+        if number.is_computed() && !self.modal.is_inch && number.scale == 9 {
+            // Nanometres in an increment, and the thousandths of them that computed values are held to.
+            let increment = self.settings.metric_increment.nm();
+            let step = increment * 1_000;
+            let half = if number.digits < 0 { -step / 2 } else { step / 2 };
+            let nm = (number.digits + half) / step * increment;
+            if nm.abs() < self.settings.length_limit_nm {
+                return Ok(Length::from_nm(nm));
+            }
+        }
         self.length_of(word, number, counts)
+    }
+
+    /// A number that counts: what was computed is rounded to the nearest whole one.
+    #[inline]
+    fn counted(&self, word: &Word) -> Result<Decimal, Alarm> {
+        let number = self.number(word)?;
+        Ok(if number.is_computed() { number.rounded(0) } else { number })
     }
 
     /// `counts`: the number counts least increments.
@@ -93,8 +106,10 @@ impl Core {
         let step = i128::from(increment) * scale;
         // The number in increments, cut or rounded once.
         let half = match self.control.policies.fine_digits {
-            FineDigits::Cut => 0,
-            FineDigits::Round => step / 2 * i128::from(if number.digits < 0 { -1i8 } else { 1 }),
+            FineDigits::Cut if !number.is_computed() => 0,
+            FineDigits::Cut | FineDigits::Round => {
+                step / 2 * i128::from(if number.digits < 0 { -1i8 } else { 1 })
+            }
         };
         let count = (nm + half) / step;
         if count.abs() >= i128::from(digits_max) {
@@ -123,6 +138,7 @@ impl Core {
             CycleIntegerWords::Increments => false,
             CycleIntegerWords::ByUnitParameter => self.settings.cycle_words_in_mm,
         };
+        let number = if in_mm { number } else { self.counted(word)? };
         if number.has_point && !in_mm {
             return Err(self.alarm("point-not-allowed", word));
         }
@@ -132,7 +148,7 @@ impl Core {
     /// A whole number without sign and point, at most `max`.
     #[inline]
     pub(crate) fn whole(&self, word: &Word, max: u32) -> Result<u32, Alarm> {
-        let number = self.number(word)?;
+        let number = self.counted(word)?;
         let digits = if number.has_point { self.whole_with_point(word, number)? } else { number.digits };
         if number.is_negative && digits != 0 {
             return Err(self.alarm("minus-not-allowed", word));
@@ -194,6 +210,7 @@ impl Core {
     /// millimetres per minute (or thousandths): the parameters say which.
     #[inline]
     fn feed(&self, word: &Word, number: Decimal, per_revolution: bool) -> Result<Length, Alarm> {
+        let number = if number.is_computed() { number.rounded(6) } else { number };
         if number.has_point && !self.modal.is_inch && number.scale <= 6 && number.digits < 1_000_000_000 {
             return Ok(Length::from_nm(number.digits * POWER[usize::from(6 - number.scale)]));
         }

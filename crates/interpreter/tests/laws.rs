@@ -140,11 +140,25 @@ fn loops_without_end_end() {
         "O1\nM98 P99990002\nM30\nO2\nM98 P99990003\nM99\nO3\nM98 P99990004\nM99\nO4\nM99\n",
         "O1\nN1 G0 X1.\nM99 P1\n",
         "O1\nM99\n",
+        "O1\nN1 GOTO 1\nM30\n",
+        "O1\nWHILE[1EQ1]DO1\nEND1\nM30\n",
+        "O1\nDO1\nDO2\n#1=#1+1\nEND2\nEND1\nM30\n",
+        "O1\nG65 P1\nM30\n",
+        "O1\n#1=5\nN5 GOTO#1\nM30\n",
     ] {
         let run = run(text.as_bytes(), &Conditions::on("fanuc-0i-tf"));
         let said = run.alarm.map(|alarm| alarm.key).or(run.warnings.first().map(|warning| warning.key));
         assert!(
-            matches!(said, Some("calls-too-deep" | "block-limit-reached" | "main-program-repeats")),
+            matches!(
+                said,
+                Some(
+                    "calls-too-deep"
+                        | "block-limit-reached"
+                        | "loop-without-motion"
+                        | "main-program-repeats"
+                        | "macro-calls-too-deep"
+                )
+            ),
             "{text}: {said:?}"
         );
     }

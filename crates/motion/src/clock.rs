@@ -196,7 +196,8 @@ impl Clock {
             | Action::Stop
             | Action::OptionalStop
             | Action::End
-            | Action::Message(_) => self.still(Kind::Other, 0.0),
+            | Action::Message(_)
+            | Action::Output(_) => self.still(Kind::Other, 0.0),
         };
         if timing.kind != Kind::Threading {
             self.thread_rpm = None;

@@ -130,6 +130,17 @@ pub struct Skip {
     pub words_kept: u8,
 }
 
+/// What an expression of a word came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Resolved {
+    /// A number.
+    Number(Decimal),
+    /// Nothing: the word is as if it were not there.
+    Absent,
+    /// It is no expression but a name, and stays.
+    AsWritten,
+}
+
 /// One block, reused from block to block so that reading a program allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Block {
@@ -145,6 +156,8 @@ pub struct Block {
     pub macro_statement: Option<(u32, u32)>,
     /// A word stands behind a comma.
     pub has_comma: bool,
+    /// The value of a word is an expression.
+    pub computes: bool,
     /// The block is a tape mark.
     pub is_percent: bool,
     /// The text ends here whatever follows.
@@ -168,6 +181,7 @@ impl Block {
         self.skip = Skip::default();
         self.macro_statement = None;
         self.has_comma = false;
+        self.computes = false;
         self.is_percent = false;
         self.is_end_of_text = false;
         self.present = 0;
@@ -176,13 +190,7 @@ impl Block {
     /// Adds a word.
     #[inline]
     pub(crate) fn push(&mut self, word: Word) {
-        if word.comma {
-            self.has_comma = true;
-        } else {
-            let letter = usize::from(word.address - b'A');
-            self.present |= 1 << letter;
-            self.last[letter] = self.words.len() as u8;
-        }
+        self.note(word, self.words.len());
         self.words.push(word);
     }
 
@@ -194,6 +202,54 @@ impl Block {
         self.words = Vec::with_capacity(words.capacity());
         for word in words.into_iter().take(kept) {
             self.push(word);
+        }
+    }
+
+    /// Gives every word whose value is an expression what `value` makes of it.
+    ///
+    /// # Errors
+    /// The first error of `value`; the block is then of no more use.
+    #[inline]
+    pub fn resolve<E>(
+        &mut self,
+        mut value: impl FnMut(&Word, usize) -> Result<Resolved, E>,
+    ) -> Result<(), E> {
+        let mut kept = 0;
+        (self.present, self.has_comma) = (0, false);
+        for place in 0..self.words.len() {
+            let mut word = self.words[place];
+            if let Value::Expression { .. } = word.value {
+                match value(&word, place)? {
+                    Resolved::Number(number) => word.value = Value::Number(number),
+                    Resolved::Absent => continue,
+                    Resolved::AsWritten => {}
+                }
+            }
+            self.words[kept] = word;
+            self.note(word, kept);
+            kept += 1;
+        }
+        self.words.truncate(kept);
+        Ok(())
+    }
+
+    /// Fills the block with words read before.
+    pub fn refill(&mut self, words: &[Word]) {
+        self.clear();
+        self.words.extend_from_slice(words);
+        for (place, word) in words.iter().enumerate() {
+            self.note(*word, place);
+        }
+    }
+
+    #[inline]
+    fn note(&mut self, word: Word, place: usize) {
+        if word.comma {
+            self.has_comma = true;
+        } else {
+            let letter = usize::from(word.address - b'A');
+            self.present |= 1 << letter;
+            self.last[letter] = place as u8;
         }
     }
 

@@ -70,9 +70,11 @@ pub enum Function {
     Power,
     AddPoint,
     Parameter,
+    Random,
+    RandomBetween,
 }
 
-const FUNCTIONS: [(&[u8], Function); 18] = [
+const FUNCTIONS: [(&[u8], Function); 20] = [
     (b"SIN", Function::Sin),
     (b"COS", Function::Cos),
     (b"TAN", Function::Tan),
@@ -91,6 +93,8 @@ const FUNCTIONS: [(&[u8], Function); 18] = [
     (b"POW", Function::Power),
     (b"ADP", Function::AddPoint),
     (b"PRM", Function::Parameter),
+    (b"RAND", Function::Random),
+    (b"SRAND", Function::RandomBetween),
 ];
 
 /// One part of an expression; numbers name other nodes of the same [`Expression`].
@@ -112,12 +116,24 @@ pub enum Node {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Expression {
     nodes: Vec<(Node, Range<u32>)>,
+    brackets: u8,
+    bare_argument: Option<Range<u32>>,
 }
 
 impl Expression {
     /// Index of the node that is the whole expression.
     pub fn root(&self) -> usize {
         self.nodes.len().saturating_sub(1)
+    }
+
+    /// How deep square brackets nest in it, those of functions included.
+    pub fn bracket_depth(&self) -> u8 {
+        self.brackets
+    }
+
+    /// The first function whose argument stands without brackets (`SIN30`), which only some controls take.
+    pub fn bare_argument(&self) -> Option<Range<u32>> {
+        self.bare_argument.clone()
     }
 
     /// A node and its place in the text.
@@ -143,15 +159,50 @@ pub enum Statement {
     End(u32),
     /// `GOTO n`
     Goto(Expression),
-    /// `POPEN`, `PCLOS`, `DPRNT[…]`, `BPRNT[…]`: kept as text.
+    /// `POPEN`, `PCLOS`, `DPRNT[…]`, `BPRNT[…]`, `SETVN…[…]`: kept as text.
     Output(Range<u32>),
+}
+
+/// What a reader of statements and expressions looked for and did not find.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Expected {
+    /// A number, a variable, a bracket or a function.
+    Value,
+    /// A number behind `#`.
+    VariableNumber,
+    /// A number that can be held.
+    Number,
+    /// `[`
+    OpeningBracket,
+    /// `]`
+    ClosingBracket,
+    /// The comma between two arguments.
+    Comma,
+    /// Arguments as the function takes them.
+    Arguments,
+    /// The name of a function.
+    Function,
+    /// Fewer brackets inside brackets.
+    LessNesting,
+    /// The number behind `DO` or `END`.
+    LoopNumber,
+    /// `=`
+    EqualsSign,
+    /// A condition in brackets and `GOTO` or `THEN`, behind `IF`.
+    IfForm,
+    /// A condition in brackets and `DO`, behind `WHILE`.
+    WhileForm,
+    /// A statement.
+    Statement,
+    /// The end of the statement.
+    End,
 }
 
 /// What is wrong with a statement or expression.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExpressionFault {
     /// What the reader looked for.
-    pub expected: &'static str,
+    pub expected: Expected,
     /// Where it looked, in bytes of the line.
     pub place: Range<u32>,
 }
@@ -188,12 +239,24 @@ struct Parser<'a> {
     at: usize,
     end: usize,
     nodes: Vec<(Node, Range<u32>)>,
+    /// Brackets open now, and the most that were.
+    open: u8,
+    deepest: u8,
+    bare_argument: Option<Range<u32>>,
 }
 
 impl<'a> Parser<'a> {
     fn new(line: &'a [u8], range: Range<u32>) -> Self {
         let end = (range.end as usize).min(line.len());
-        Self { line, at: (range.start as usize).min(end), end, nodes: Vec::new() }
+        Self {
+            line,
+            at: (range.start as usize).min(end),
+            end,
+            nodes: Vec::new(),
+            open: 0,
+            deepest: 0,
+            bare_argument: None,
+        }
     }
 
     fn blanks(&mut self) {
@@ -223,14 +286,14 @@ impl<'a> Parser<'a> {
         found
     }
 
-    fn fault<T>(&mut self, expected: &'static str) -> Result<T, ExpressionFault> {
+    fn fault<T>(&mut self, expected: Expected) -> Result<T, ExpressionFault> {
         self.blanks();
         let end = (self.at + 1).min(self.end).max(self.at);
         Err(ExpressionFault { expected, place: self.at as u32..end as u32 })
     }
 
     fn end(&mut self) -> Result<(), ExpressionFault> {
-        if self.peek().is_some() { self.fault("end of statement") } else { Ok(()) }
+        if self.peek().is_some() { self.fault(Expected::End) } else { Ok(()) }
     }
 
     fn add(&mut self, node: Node, start: usize) -> usize {
@@ -239,9 +302,37 @@ impl<'a> Parser<'a> {
     }
 
     fn whole_expression(&mut self, level: u8) -> Result<Expression, ExpressionFault> {
-        self.nodes = Vec::new();
+        self.begin();
         self.binary(level, 0)?;
-        Ok(Expression { nodes: std::mem::take(&mut self.nodes) })
+        Ok(self.finish())
+    }
+
+    fn begin(&mut self) {
+        self.nodes = Vec::new();
+        (self.open, self.deepest, self.bare_argument) = (0, 0, None);
+    }
+
+    fn finish(&mut self) -> Expression {
+        Expression {
+            nodes: std::mem::take(&mut self.nodes),
+            brackets: self.deepest,
+            bare_argument: self.bare_argument.take(),
+        }
+    }
+
+    fn open_bracket(&mut self) -> bool {
+        let found = self.take(b'[');
+        if found {
+            self.open = self.open.saturating_add(1);
+            self.deepest = self.deepest.max(self.open);
+        }
+        found
+    }
+
+    fn close_bracket(&mut self) -> bool {
+        let found = self.take(b']');
+        self.open = self.open.saturating_sub(u8::from(found));
+        found
     }
 
     /// Level 0 compares, 1 adds, 2 multiplies; all from left to right.
@@ -292,7 +383,7 @@ impl<'a> Parser<'a> {
         self.blanks();
         let start = self.at;
         if depth >= EXPRESSION_DEPTH_MAX {
-            return self.fault("less nesting");
+            return self.fault(Expected::LessNesting);
         }
         if self.take(b'-') {
             let value = self.unary(depth + 1)?;
@@ -306,7 +397,7 @@ impl<'a> Parser<'a> {
             Some(b'[') => self.bracket(depth),
             Some(b'0'..=b'9' | b'.') => self.number(),
             Some(b'A'..=b'Z' | b'a'..=b'z') => self.call(depth),
-            _ => self.fault("value"),
+            _ => self.fault(Expected::Value),
         }
     }
 
@@ -314,23 +405,23 @@ impl<'a> Parser<'a> {
         let start = self.at;
         self.at += 1;
         if depth >= EXPRESSION_DEPTH_MAX {
-            return self.fault("less nesting");
+            return self.fault(Expected::LessNesting);
         }
         let index = match self.peek() {
             Some(b'#') => self.variable(depth + 1)?,
             Some(b'[') => self.bracket(depth + 1)?,
             Some(b'0'..=b'9') => self.number()?,
-            _ => return self.fault("variable number"),
+            _ => return self.fault(Expected::VariableNumber),
         };
         Ok(self.add(Node::Variable(index), start))
     }
 
     fn bracket(&mut self, depth: usize) -> Result<usize, ExpressionFault> {
-        if !self.take(b'[') {
-            return self.fault("[");
+        if !self.open_bracket() {
+            return self.fault(Expected::OpeningBracket);
         }
         let inner = self.binary(COMPARISONS, depth + 1)?;
-        if self.take(b']') { Ok(inner) } else { self.fault("]") }
+        if self.close_bracket() { Ok(inner) } else { self.fault(Expected::ClosingBracket) }
     }
 
     fn number(&mut self) -> Result<usize, ExpressionFault> {
@@ -343,7 +434,7 @@ impl<'a> Parser<'a> {
             Ok(value) if value.is_finite() => Ok(self.add(Node::Number(value), start)),
             _ => {
                 self.at = start;
-                self.fault("number")
+                self.fault(Expected::Number)
             }
         }
     }
@@ -357,38 +448,60 @@ impl<'a> Parser<'a> {
             .iter()
             .find(|(word, _)| *word == name.as_slice())
             .or_else(|| FUNCTIONS.iter().find(|(word, _)| name.len() == 2 && word.starts_with(&name)));
-        let Some((_, function)) = found else { return self.fault("function") };
+        let Some((_, function)) = found else { return self.fault(Expected::Function) };
         self.at += length;
         let mut second = None;
-        let first = if self.take(b'[') {
+        let first = if self.open_bracket() {
             let inner = self.binary(COMPARISONS, depth + 1)?;
             if self.take(b',') {
                 second = Some(self.binary(COMPARISONS, depth + 1)?);
             }
-            if !self.take(b']') {
-                return self.fault("]");
+            if !self.close_bracket() {
+                return self.fault(Expected::ClosingBracket);
             }
             inner
         } else {
-            // Some controls take `SIN30`.
-            self.unary(depth + 1)?
+            // Some controls take `SIN30`; whether this one does is for others to say.
+            let argument = self.unary(depth + 1)?;
+            self.bare_argument.get_or_insert(start as u32..self.at as u32);
+            argument
         };
-        if *function == Function::ArcTan && second.is_none() && self.peek() == Some(b'/') {
+        let divides = matches!(function, Function::ArcTan | Function::Parameter);
+        if divides && self.peek() == Some(b'/') && (second.is_none() || *function == Function::Parameter) {
             let back = self.at;
             self.at += 1;
             if self.peek() == Some(b'[') {
-                second = Some(self.bracket(depth + 1)?);
+                let behind = self.bracket(depth + 1)?;
+                // `PRM[n,b]/[a]`: the axis takes the place of the bit, which axis parameters hardly have.
+                second = Some(behind);
             } else {
                 self.at = back;
             }
         }
+        let takes_two = matches!(function, Function::Power | Function::RandomBetween);
+        let may_take_two = takes_two || divides;
+        if takes_two && second.is_none() {
+            return self.fault(Expected::Comma);
+        }
+        if second.is_some() && !may_take_two {
+            return self.fault(Expected::Arguments);
+        }
         Ok(self.add(Node::Call(*function, first, second), start))
     }
 
-    fn condition(&mut self) -> Result<Expression, ExpressionFault> {
-        self.nodes = Vec::new();
+    /// What `IF` and `WHILE` ask: a comparison in brackets, or comparisons joined by `AND`, `OR`, `XOR`.
+    fn condition(&mut self, form: Expected) -> Result<Expression, ExpressionFault> {
+        self.begin();
+        if self.peek() != Some(b'[') {
+            return self.fault(form);
+        }
         self.bracket(0)?;
-        Ok(Expression { nodes: std::mem::take(&mut self.nodes) })
+        let expression = self.finish();
+        use BinaryOperator as B;
+        match expression.node(expression.root()) {
+            Some((Node::Binary(B::Compare(_) | B::And | B::Or | B::ExclusiveOr, ..), _)) => Ok(expression),
+            _ => self.fault(form),
+        }
     }
 
     fn loop_number(&mut self) -> Result<u32, ExpressionFault> {
@@ -402,7 +515,7 @@ impl<'a> Parser<'a> {
             Ok(number) => Ok(number),
             Err(_) => {
                 self.at = start;
-                self.fault("loop number")
+                self.fault(Expected::LoopNumber)
             }
         }
     }
@@ -417,21 +530,21 @@ impl<'a> Parser<'a> {
             }
         }
         if self.take_word(b"IF") {
-            let condition = self.condition()?;
+            let condition = self.condition(Expected::IfForm)?;
             if self.take_word(b"GOTO") {
                 return Ok(Statement::IfGoto(condition, self.whole_expression(SUMS)?));
             }
             if self.take_word(b"THEN") && depth == 0 {
                 return Ok(Statement::IfThen(condition, Box::new(self.statement(1)?)));
             }
-            return self.fault("GOTO or THEN");
+            return self.fault(Expected::IfForm);
         }
         if self.take_word(b"WHILE") {
-            let condition = self.condition()?;
+            let condition = self.condition(Expected::WhileForm)?;
             if self.take_word(b"DO") {
                 return Ok(Statement::While(condition, self.loop_number()?));
             }
-            return self.fault("DO");
+            return self.fault(Expected::WhileForm);
         }
         if self.take_word(b"GOTO") {
             return Ok(Statement::Goto(self.whole_expression(SUMS)?));
@@ -443,20 +556,20 @@ impl<'a> Parser<'a> {
             return Ok(Statement::End(self.loop_number()?));
         }
         if self.take(b'#') {
-            self.nodes = Vec::new();
+            self.begin();
             match self.peek() {
                 Some(b'#') => self.variable(0)?,
                 Some(b'[') => self.bracket(0)?,
                 Some(b'0'..=b'9') => self.number()?,
-                _ => return self.fault("variable number"),
+                _ => return self.fault(Expected::VariableNumber),
             };
-            let target = Expression { nodes: std::mem::take(&mut self.nodes) };
+            let target = self.finish();
             if !self.take(b'=') {
-                return self.fault("=");
+                return self.fault(Expected::EqualsSign);
             }
             return Ok(Statement::Assign(target, self.whole_expression(SUMS)?));
         }
-        self.fault("statement")
+        self.fault(Expected::Statement)
     }
 }
 
@@ -482,7 +595,7 @@ mod tests {
     fn expression(text: &str) -> String {
         match parse_expression(text.as_bytes(), 0..text.len() as u32) {
             Ok(tree) => show(&tree, tree.root()),
-            Err(fault) => format!("expected {} at {}", fault.expected, fault.place.start),
+            Err(fault) => format!("expected {:?} at {}", fault.expected, fault.place.start),
         }
     }
 
@@ -497,13 +610,13 @@ mod tests {
 
     #[test]
     fn faults_name_what_was_expected_and_where() {
-        assert_eq!(expression("#1+"), "expected value at 3");
-        assert_eq!(expression("[#1"), "expected ] at 3");
-        assert_eq!(expression("FOO[1]"), "expected function at 0");
-        assert_eq!(expression("1 2"), "expected end of statement at 2");
-        assert!(expression(&"[".repeat(100_000)).starts_with("expected less nesting"));
-        assert!(expression(&"#".repeat(100_000)).starts_with("expected less nesting"));
-        assert!(expression(&"-".repeat(100_000)).starts_with("expected less nesting"));
+        assert_eq!(expression("#1+"), "expected Value at 3");
+        assert_eq!(expression("[#1"), "expected ClosingBracket at 3");
+        assert_eq!(expression("FOO[1]"), "expected Function at 0");
+        assert_eq!(expression("1 2"), "expected End at 2");
+        assert!(expression(&"[".repeat(100_000)).starts_with("expected LessNesting"));
+        assert!(expression(&"#".repeat(100_000)).starts_with("expected LessNesting"));
+        assert!(expression(&"-".repeat(100_000)).starts_with("expected LessNesting"));
     }
 
     #[test]
@@ -514,6 +627,6 @@ mod tests {
         assert!(matches!(read("IF [#1 EQ #0] THEN #1=5"), Ok(Statement::IfThen(..))));
         assert!(matches!(read("WHILE[#1 LT 10]DO1"), Ok(Statement::While(_, 1))));
         assert!(matches!(read("END1"), Ok(Statement::End(1))));
-        assert!(matches!(read("#1 5"), Err(ExpressionFault { expected: "=", .. })));
+        assert!(matches!(read("#1 5"), Err(ExpressionFault { expected: Expected::EqualsSign, .. })));
     }
 }

@@ -20,10 +20,10 @@ mod number;
 mod scan;
 mod tree;
 
-pub use block::{Block, Extent, ExtentKind, Fault, FaultKind, Skip, Value, Word};
+pub use block::{Block, Extent, ExtentKind, Fault, FaultKind, Resolved, Skip, Value, Word};
 pub use expression::{
-    BinaryOperator, Comparison, EXPRESSION_DEPTH_MAX, Expression, ExpressionFault, Function, Node, Statement,
-    parse_expression, parse_statement,
+    BinaryOperator, Comparison, EXPRESSION_DEPTH_MAX, Expected, Expression, ExpressionFault, Function, Node,
+    Statement, parse_expression, parse_statement,
 };
 pub use lines::{LineEnd, find_line_end};
 pub use number::Decimal;

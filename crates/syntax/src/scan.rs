@@ -124,7 +124,11 @@ impl Scanner<'_> {
         self.line[self.at..reach].contains(&b'>')
             && match self.block.words.last() {
                 None => true,
-                Some(word) => word.address == b'O' && word.value == Value::Missing,
+                // `O<NAME>`, or a call of a program by its name.
+                Some(word) => {
+                    (word.address == b'O' && word.value == Value::Missing)
+                        || matches!(word.address, b'M' | b'G')
+                }
             }
     }
 
@@ -297,6 +301,7 @@ impl Scanner<'_> {
 
     fn expression_value(&mut self, address: u8, comma: bool, start: usize, from: usize, at: usize) {
         let end = self.expression_end(at);
+        self.block.computes = true;
         self.push(address, comma, start, end, Value::Expression { start: from as u32, end: end as u32 });
         self.at = end;
     }

@@ -38,6 +38,11 @@ impl LeastIncrement {
         self.nm as f64 / NM_PER_MM as f64
     }
 
+    /// The increment in inches.
+    pub fn to_inches(self) -> f64 {
+        self.nm as f64 / (25.4 * NM_PER_MM as f64)
+    }
+
     /// Decimal places that show one metric increment in millimetres: 2, 3 or 4.
     pub const fn metric_decimals(self) -> u8 {
         match self.nm {

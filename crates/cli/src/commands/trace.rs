@@ -73,7 +73,7 @@ pub(crate) fn write_alarm(buffer: &mut Vec<u8>, execution: &Execution<'_>, print
     let words = finding.words(messages, printer.speech.language);
     let trace = &finding.diagnostic.trace;
     let alarm = jsonl::TraceAlarm {
-        id: finding.id(messages),
+        id: &finding.id(messages),
         key: finding.diagnostic.key,
         message: &words.message,
         line: finding.diagnostic.place.map_or(0, |place| place.line),

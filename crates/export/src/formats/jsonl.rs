@@ -133,6 +133,10 @@ pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
             out.extend_from_slice(br#"{"op":"message","text":"#);
             write_json_string(out, text);
         }
+        Action::Output(text) => {
+            out.extend_from_slice(br#"{"op":"output","text":"#);
+            write_json_string(out, text);
+        }
     }
     write_origin(out, &command.origin);
 }

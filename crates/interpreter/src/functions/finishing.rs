@@ -23,7 +23,7 @@ fn finishing(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     let range = core.range_words(call)?;
     core.compare_with_roughing(&range);
     let (first, _) = core.find_range(&range, call)?;
-    core.remember_finished(first.line);
+    core.remember_finished(first.line.line);
     core.start_finish(first, range, call.code, call.environment)
 }
 

@@ -16,6 +16,7 @@ mod interpolation;
 mod linear;
 mod look_ahead;
 mod machine_coordinates;
+mod macro_call;
 mod modes;
 mod multi_thread;
 mod path_mode;
@@ -37,6 +38,7 @@ use turnwright_syntax::Block;
 use crate::block::Call;
 use crate::in_force::{GROUPS, codes_at_power_on};
 use crate::machine::Core;
+use crate::macros::CallKind;
 use crate::report::Alarm;
 
 /// What a function does when its block runs.
@@ -51,7 +53,12 @@ pub(crate) enum Kind {
     Motion(Run),
     /// Acts once.
     OneShot(Run),
+    /// Calls a macro, with the other words of the block as arguments.
+    Call(CallKind),
 }
+
+/// The function that ends a modal macro call.
+pub(crate) const MODAL_CALL_CANCEL: &str = "modal-macro-cancel";
 
 /// A function: what the block may hold and what happens.
 pub(crate) struct Function {
@@ -129,6 +136,16 @@ impl Function {
         function
     }
 
+    /// A macro call.
+    pub(crate) const fn call(name: &'static str, kind: CallKind) -> Self {
+        Self::new(name, Kind::Call(kind))
+    }
+
+    /// Whether it calls a macro.
+    pub(crate) const fn is_call(&self) -> bool {
+        matches!(self.kind, Kind::Call(_))
+    }
+
     /// A one-shot function.
     pub(crate) const fn one_shot(name: &'static str, run: Run) -> Self {
         Self::new(name, Kind::OneShot(run))
@@ -202,8 +219,11 @@ impl Function {
 
     #[inline]
     pub(crate) fn run(&self, core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
-        let (Kind::Mode(run) | Kind::Motion(run) | Kind::OneShot(run)) = self.kind;
-        run(core, call)
+        match self.kind {
+            Kind::Mode(run) | Kind::Motion(run) | Kind::OneShot(run) => run(core, call),
+            // Calls take the whole block and never get here.
+            Kind::Call(_) => Ok(()),
+        }
     }
 }
 
@@ -276,6 +296,10 @@ static ALL: &[&Function] = &[
     &groove::FACE_GROOVE,
     &groove::RADIAL_GROOVE,
     &multi_thread::MULTI_THREAD,
+    &macro_call::MACRO_CALL,
+    &macro_call::MODAL_MACRO_CALL,
+    &macro_call::MACRO_CALL_EACH_BLOCK,
+    &macro_call::MODAL_MACRO_CANCEL,
 ];
 
 /// A function by its place in the list.

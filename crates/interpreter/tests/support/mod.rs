@@ -74,7 +74,7 @@ pub fn run_on(mut control: Control, text: &[u8], conditions: &Conditions) -> Run
     for (number, value) in setup.parameter_words().iter().chain(&conditions.parameters) {
         control.parameters.set(number, value).unwrap_or_else(|fault| panic!("{fault:?}"));
     }
-    let options = Options { blocks_max: 200_000 };
+    let options = Options { blocks_max: 200_000, idle_blocks_max: 200_000 };
     let mut interpreter = Interpreter::new(control.clone(), &setup, SourceId(0), options)
         .unwrap_or_else(|fault| panic!("{fault:?}"));
     let decimals = interpreter.decimals();
@@ -118,7 +118,7 @@ impl Run {
         let messages = MESSAGES.get_or_init(Messages::load);
         let mut out = String::new();
         for diagnostic in self.warnings.iter().chain(&self.alarm) {
-            let id = messages.id(diagnostic.key, self.control.alarm_ids).unwrap_or("?");
+            let id = messages.id_of(diagnostic, self.control.alarm_ids).unwrap_or("?".into());
             let severity = format!("{:?}", diagnostic.severity).to_lowercase();
             let place = diagnostic.place.map_or(String::new(), |place| {
                 format!(" {}:{}-{}", place.line, place.column, place.end_column)

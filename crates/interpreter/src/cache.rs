@@ -1,0 +1,255 @@
+//! Blocks that ran before and are likely to run again: loops and subprograms run from here without being read,
+//! split into words or compiled a second time.
+//!
+//! A block is kept when it lies before a place that execution jumped back from, so that a program without
+//! loops keeps nothing. Every block knows the one behind it and, once it has jumped, the one it jumps to.
+//! What is kept is bounded by [`CACHE_BYTES_MAX`](crate::limits::CACHE_BYTES_MAX); beyond it blocks are read anew.
+
+use turnwright_diagnostics::SourceId;
+use turnwright_syntax::{Block, Value, Word};
+
+use crate::index::{NumberMap, Resume};
+use crate::limits::CACHE_BYTES_MAX;
+use crate::machine::BlockPlace;
+use crate::macros::{Code, Statement};
+
+/// A block that is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct BlockId(u32);
+
+/// What a kept block does.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kept {
+    Statement(Statement),
+    Words {
+        first: u32,
+        count: u8,
+        /// Some of them are expressions.
+        computes: bool,
+    },
+    /// Nothing to execute.
+    Blank,
+}
+
+/// A way from one block to another that is filled in when it is first gone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Way {
+    Next,
+    Jump,
+}
+
+#[derive(Clone, Debug)]
+struct Entry {
+    at: BlockPlace,
+    start: Resume,
+    behind: Resume,
+    kept: Kept,
+    /// Switches that skip it.
+    skip: u16,
+    text: (u32, u32),
+    next: Option<BlockId>,
+    jump: Option<BlockId>,
+}
+
+/// The blocks that are kept.
+#[derive(Debug, Default)]
+pub(crate) struct Cache {
+    entries: Vec<Entry>,
+    words: Vec<Word>,
+    /// Compiled values of the words above, for those that are expressions.
+    codes: Vec<Code>,
+    text: Vec<u8>,
+    places: NumberMap<(SourceId, u64, u32), BlockId>,
+    /// Text in work, and the last place in it that execution jumped back from: blocks before it are kept.
+    source: SourceId,
+    hot_end: u64,
+    hot: Vec<(SourceId, u64)>,
+    /// The block in work, when it is a kept one.
+    pub(crate) current: Option<BlockId>,
+    /// The way that leads to the block that comes next.
+    open: Option<(BlockId, Way)>,
+}
+
+/// What running a kept block needs to know.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found {
+    pub(crate) id: BlockId,
+    pub(crate) kept: Kept,
+    pub(crate) skip: u16,
+}
+
+impl Cache {
+    /// Execution went back: what lies before `from` will run again.
+    pub(crate) fn heat(&mut self, source: SourceId, from: u64) {
+        match self.hot.iter_mut().find(|(known, _)| *known == source) {
+            Some((_, end)) => *end = (*end).max(from),
+            None => self.hot.push((source, from)),
+        }
+        if source == self.source {
+            self.hot_end = self.hot_end.max(from);
+        }
+    }
+
+    /// Whether blocks at a place are kept.
+    #[inline]
+    pub(crate) fn is_hot(&self, source: SourceId, offset: u64) -> bool {
+        offset <= self.hot_end && self.hot_end > 0 && source == self.source
+    }
+
+    /// Another text is read.
+    pub(crate) fn enter(&mut self, source: SourceId) {
+        if source != self.source {
+            self.source = source;
+            self.hot_end = self.hot.iter().find(|(known, _)| *known == source).map_or(0, |(_, end)| *end);
+        }
+    }
+
+    /// The block at a place, if it is kept; it becomes the current one.
+    pub(crate) fn find(&mut self, at: Resume) -> Option<Found> {
+        let id = *self.places.get(&(at.line.source, at.line.offset, at.from as u32))?;
+        self.arrive(id);
+        Some(self.found(id))
+    }
+
+    #[inline]
+    fn arrive(&mut self, id: BlockId) {
+        if let Some((from, way)) = self.open.take() {
+            let entry = &mut self.entries[from.0 as usize];
+            match way {
+                Way::Next => entry.next = Some(id),
+                Way::Jump => entry.jump = Some(id),
+            }
+        }
+        self.current = Some(id);
+    }
+
+    #[inline]
+    pub(crate) fn found(&self, id: BlockId) -> Found {
+        let entry = &self.entries[id.0 as usize];
+        Found { id, kept: entry.kept, skip: entry.skip }
+    }
+
+    /// The place of the current block.
+    #[inline]
+    pub(crate) fn place(&self, id: BlockId) -> BlockPlace {
+        self.entries[id.0 as usize].at
+    }
+
+    /// Where reading goes on behind a block.
+    pub(crate) fn behind(&self, id: BlockId) -> Resume {
+        self.entries[id.0 as usize].behind
+    }
+
+    /// Where a block begins.
+    pub(crate) fn start(&self, id: BlockId) -> Resume {
+        self.entries[id.0 as usize].start
+    }
+
+    /// The text of the current block's line.
+    pub(crate) fn line(&self, id: BlockId) -> &[u8] {
+        let (start, end) = self.entries[id.0 as usize].text;
+        &self.text[start as usize..end as usize]
+    }
+
+    /// Goes from the current block along a way that was gone before; false when it has to be found.
+    #[inline]
+    pub(crate) fn follow(&mut self, way: Way) -> bool {
+        let Some(id) = self.current else { return false };
+        let entry = &self.entries[id.0 as usize];
+        let to = match way {
+            Way::Next => entry.next,
+            Way::Jump => entry.jump,
+        };
+        if to.is_some() {
+            self.current = to;
+            true
+        } else {
+            self.open = Some((id, way));
+            false
+        }
+    }
+
+    /// Reading goes on somewhere in the text.
+    pub(crate) fn leave(&mut self) {
+        self.current = None;
+    }
+
+    /// The way that is being looked for leads nowhere that is known.
+    pub(crate) fn forget_way(&mut self) {
+        self.open = None;
+    }
+
+    /// Fills a block with the words of a kept one.
+    #[inline]
+    pub(crate) fn refill(&self, block: &mut Block, first: u32, count: u8) {
+        block.refill(&self.words[first as usize..first as usize + usize::from(count)]);
+    }
+
+    /// The compiled value of a word of a kept block.
+    #[inline]
+    pub(crate) fn code(&self, first: u32, place: usize) -> Code {
+        self.codes[first as usize + place]
+    }
+
+    /// Keeps a block; `None` when there is no room.
+    pub(crate) fn keep_words(&mut self, block: &Block, codes: &[Code], frame: Frame<'_>) -> Option<BlockId> {
+        let first = self.words.len() as u32;
+        let computes = block.words.iter().any(|word| matches!(word.value, Value::Expression { .. }));
+        let count = u8::try_from(block.words.len()).ok()?;
+        if !self.has_room(frame.line.len() + block.words.len() * (size_of::<Word>() + size_of::<Code>())) {
+            return None;
+        }
+        self.words.extend_from_slice(&block.words);
+        self.codes.extend_from_slice(codes);
+        self.codes.resize(self.words.len(), Code::default());
+        Some(self.keep(Kept::Words { first, count, computes }, frame))
+    }
+
+    /// Keeps a statement, or a block with nothing to execute; `None` when there is no room.
+    pub(crate) fn keep_statement(&mut self, kept: Kept, frame: Frame<'_>) -> Option<BlockId> {
+        self.has_room(frame.line.len()).then(|| self.keep(kept, frame))
+    }
+
+    fn has_room(&self, more: usize) -> bool {
+        // The table of places holds as much again as an entry at most.
+        let entries = self.entries.len() * (size_of::<Entry>() + 48);
+        let words = self.words.len() * (size_of::<Word>() + size_of::<Code>());
+        entries + words + self.text.len() + more < CACHE_BYTES_MAX
+    }
+
+    fn keep(&mut self, kept: Kept, frame: Frame<'_>) -> BlockId {
+        let id = BlockId(self.entries.len() as u32);
+        let start = self.text.len() as u32;
+        self.text.extend_from_slice(frame.line);
+        let text = (start, self.text.len() as u32);
+        let Place { at, start, behind, skip } = frame.place;
+        self.entries.push(Entry { at, start, behind, kept, skip, text, next: None, jump: None });
+        self.places.insert((start.line.source, start.line.offset, start.from as u32), id);
+        self.arrive(id);
+        id
+    }
+}
+
+/// Where a block that is to be kept stands.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub(crate) at: BlockPlace,
+    pub(crate) start: Resume,
+    pub(crate) behind: Resume,
+    /// Switches that skip it.
+    pub(crate) skip: u16,
+}
+
+impl Place {
+    /// The place with the text of its line.
+    pub(crate) fn of(self, line: &[u8]) -> Frame<'_> {
+        Frame { place: self, line }
+    }
+}
+
+/// A place with the text of its line.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame<'a> {
+    place: Place,
+    line: &'a [u8],
+}

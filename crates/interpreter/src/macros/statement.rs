@@ -1,0 +1,349 @@
+//! Macro statements: compiled once, and what they do.
+//!
+//! `#i = …`, `IF … GOTO`, `IF … THEN`, `GOTO`, `WHILE … DO`, `DO`, `END`, and the output statements. Loops and
+//! jumps are looked up in the index of the text; a kept block remembers where it led.
+//!
+//! Source: branching and repetition of custom macro, both families.
+
+use std::ops::Range;
+
+use turnwright_diagnostics::Diagnostic;
+use turnwright_syntax::{Expected, Expression, ExpressionFault, Node, Statement as Written, parse_statement};
+
+use super::code::{Code, CodeFault};
+use super::variables::number;
+use crate::Environment;
+use crate::cache::Way;
+use crate::index::Resume;
+use crate::machine::{Core, Halt};
+use crate::report::Alarm;
+
+/// What is written to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Target {
+    /// A variable with a place of its own.
+    Slot(u16),
+    /// The variable whose number this computes.
+    Number(Code),
+}
+
+/// A sequence number that is jumped to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Label {
+    Fixed(u32),
+    Computed(Code),
+}
+
+/// A statement in compiled form.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Statement {
+    Assign {
+        target: Target,
+        value: Code,
+    },
+    IfGoto {
+        condition: Code,
+        label: Label,
+    },
+    IfThen {
+        condition: Code,
+        target: Target,
+        value: Code,
+    },
+    While {
+        condition: Code,
+    },
+    Do,
+    End,
+    Goto {
+        label: Label,
+    },
+    /// Output; the text between these bytes of the line says what.
+    Output {
+        start: u32,
+        end: u32,
+    },
+}
+
+/// Largest sequence number that a jump may name, by digits.
+fn sequence_max(digits: u8) -> f64 {
+    10f64.powi(i32::from(digits)) - 1.0
+}
+
+impl Core {
+    /// Compiles the statement at some bytes of the line in work.
+    pub(crate) fn compile_statement(&mut self, range: Range<u32>) -> Result<Statement, Alarm> {
+        let written = match parse_statement(self.line_bytes(), range.clone()) {
+            Ok(written) => written,
+            Err(fault) => return Err(self.expression_fault(&fault, range)),
+        };
+        let statement = self.compile_written(&written, &range);
+        statement.map_err(|(fault, place)| self.code_fault(fault, place))
+    }
+
+    fn compile_written(
+        &mut self,
+        written: &Written,
+        range: &Range<u32>,
+    ) -> Result<Statement, (CodeFault, Range<u32>)> {
+        Ok(match written {
+            Written::Assign(target, value) => {
+                let (target, value) = self.compile_assignment(target, value)?;
+                Statement::Assign { target, value }
+            }
+            Written::IfGoto(condition, label) => {
+                Statement::IfGoto { condition: self.compile(condition)?, label: self.compile_label(label)? }
+            }
+            Written::IfThen(condition, then) => match &**then {
+                Written::Assign(target, value) => {
+                    let condition = self.compile(condition)?;
+                    let (target, value) = self.compile_assignment(target, value)?;
+                    Statement::IfThen { condition, target, value }
+                }
+                _ => return Err((CodeFault::ThenForm, range.clone())),
+            },
+            Written::While(condition, loop_number) => {
+                check_loop_number(*loop_number, range)?;
+                Statement::While { condition: self.compile(condition)? }
+            }
+            Written::Do(loop_number) => {
+                check_loop_number(*loop_number, range)?;
+                Statement::Do
+            }
+            Written::End(loop_number) => {
+                check_loop_number(*loop_number, range)?;
+                Statement::End
+            }
+            Written::Goto(label) => Statement::Goto { label: self.compile_label(label)? },
+            Written::Output(place) => Statement::Output { start: place.start, end: place.end },
+        })
+    }
+
+    fn compile(&mut self, expression: &Expression) -> Result<Code, (CodeFault, Range<u32>)> {
+        self.macros.machine.compile(expression, &self.macros.variables, false)
+    }
+
+    fn compile_assignment(
+        &mut self,
+        target: &Expression,
+        value: &Expression,
+    ) -> Result<(Target, Code), (CodeFault, Range<u32>)> {
+        let slot = match target.node(target.root()) {
+            Some((Node::Number(variable), _)) => self.macros.variables.slot(*variable),
+            _ => None,
+        };
+        let target = match slot {
+            Some(slot) if !self.macros.is_protected(slot) => Target::Slot(slot),
+            _ => Target::Number(self.compile(target)?),
+        };
+        Ok((target, self.compile(value)?))
+    }
+
+    fn compile_label(&mut self, label: &Expression) -> Result<Label, (CodeFault, Range<u32>)> {
+        match label.node(label.root()) {
+            Some((Node::Number(value), _))
+                if (1.0..=sequence_max(self.control.limits.sequence_digits)).contains(value)
+                    && value.fract() == 0.0 =>
+            {
+                Ok(Label::Fixed(*value as u32))
+            }
+            _ => Ok(Label::Computed(self.compile(label)?)),
+        }
+    }
+
+    /// Does what a statement says. Behind it, reading stands where the program goes on.
+    #[inline]
+    pub(crate) fn run_statement(
+        &mut self,
+        statement: Statement,
+        environment: &mut dyn Environment,
+    ) -> Result<(), Halt> {
+        match statement {
+            Statement::Assign { target, value } => self.assign(target, value, environment)?,
+            Statement::IfThen { condition, target, value } => {
+                if self.holds(condition, environment)? {
+                    self.assign(target, value, environment)?;
+                }
+            }
+            Statement::IfGoto { condition, label } => {
+                if self.holds(condition, environment)? {
+                    return self.goto(label, environment);
+                }
+            }
+            Statement::Goto { label } => return self.goto(label, environment),
+            Statement::While { condition } => {
+                if !self.holds(condition, environment)? {
+                    return Ok(self.leave_loop(environment)?);
+                }
+                self.check_loop(environment)?;
+            }
+            Statement::Do => self.check_loop(environment)?,
+            Statement::End => return Ok(self.repeat_loop(environment)?),
+            Statement::Output { start, end } => self.output(start..end, environment)?,
+        }
+        self.go_on(environment)?;
+        Ok(())
+    }
+
+    #[inline]
+    fn holds(&mut self, condition: Code, environment: &mut dyn Environment) -> Result<bool, Halt> {
+        Ok(number(self.evaluate(condition, 1.0, environment)?) != 0.0)
+    }
+
+    #[inline]
+    fn assign(&mut self, target: Target, value: Code, environment: &mut dyn Environment) -> Result<(), Halt> {
+        match target {
+            Target::Slot(slot) => {
+                let value = self.evaluate(value, 1.0, environment)?;
+                let value = self.macros.machine.stored(value);
+                self.macros.variables.set(slot, value);
+            }
+            Target::Number(target) => {
+                let variable = number(self.evaluate(target, 1.0, environment)?);
+                let place = self.macros.machine.fault_place();
+                let value = self.evaluate(value, 1.0, environment)?;
+                self.write_variable(variable, value, place, environment)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The block behind the one in work comes next.
+    #[inline]
+    pub(crate) fn go_on(&mut self, environment: &mut dyn Environment) -> Result<(), Alarm> {
+        let Some(current) = self.cache.current else { return Ok(()) };
+        if self.cache.follow(Way::Next) {
+            return Ok(());
+        }
+        let behind = self.cache.behind(current);
+        self.go(behind, environment)
+    }
+
+    #[cold]
+    fn find_label(&mut self, label: Label, environment: &mut dyn Environment) -> Result<Resume, Halt> {
+        let wanted = match label {
+            Label::Fixed(wanted) => wanted,
+            Label::Computed(code) => {
+                let value = number(self.evaluate(code, 1.0, environment)?).round();
+                let max = sequence_max(self.control.limits.sequence_digits);
+                if !(1.0..=max).contains(&value) {
+                    let alarm = self.alarm_block("jump-number-out-of-range");
+                    return Err(alarm.into());
+                }
+                value as u32
+            }
+        };
+        let here = self.block_start();
+        let Some((to, _)) = self.find_sequence(wanted, here, environment)? else {
+            let diagnostic = Diagnostic::alarm("jump-target-not-found").at(self.block_place());
+            let diagnostic = diagnostic.with("word", format!("N{wanted}"));
+            return Err(self.finish(diagnostic.with("sequence", i64::from(wanted))).into());
+        };
+        if self.index(here.line.source, environment)?.enters_loop(here, to) {
+            let diagnostic = Diagnostic::alarm("jump-into-loop").at(self.block_place());
+            return Err(self.finish(diagnostic.with("word", format!("N{wanted}"))).into());
+        }
+        Ok(to)
+    }
+
+    #[inline]
+    fn goto(&mut self, label: Label, environment: &mut dyn Environment) -> Result<(), Halt> {
+        if matches!(label, Label::Fixed(_)) && self.cache.follow(Way::Jump) {
+            return Ok(());
+        }
+        let to = self.find_label(label, environment)?;
+        self.jump(to, environment)?;
+        Ok(())
+    }
+
+    /// `WHILE` does not hold: on behind its `END`.
+    fn leave_loop(&mut self, environment: &mut dyn Environment) -> Result<(), Alarm> {
+        if self.cache.follow(Way::Jump) {
+            return Ok(());
+        }
+        let here = self.block_start();
+        match self.index(here.line.source, environment)?.behind_loop(here) {
+            Some(behind) => self.jump(behind, environment),
+            None => Err(self.alarm_block("loop-without-end")),
+        }
+    }
+
+    /// A loop must have its end before it is entered.
+    #[inline]
+    fn check_loop(&mut self, environment: &mut dyn Environment) -> Result<(), Alarm> {
+        if self.cache.current.is_some() {
+            // It was checked when it ran for the first time.
+            return Ok(());
+        }
+        let here = self.block_start();
+        match self.index(here.line.source, environment)?.behind_loop(here) {
+            Some(_) => Ok(()),
+            None => Err(self.alarm_block("loop-without-end")),
+        }
+    }
+
+    /// `END`: back to the `DO`.
+    #[inline]
+    fn repeat_loop(&mut self, environment: &mut dyn Environment) -> Result<(), Alarm> {
+        if self.cache.follow(Way::Jump) {
+            return Ok(());
+        }
+        let here = self.block_start();
+        match self.index(here.line.source, environment)?.start_of_loop(here) {
+            Some(start) => self.jump(start, environment),
+            None => Err(self.alarm_block("end-without-loop")),
+        }
+    }
+
+    /// The alarm of a statement or expression that cannot be read.
+    #[cold]
+    pub(crate) fn expression_fault(&self, fault: &ExpressionFault, range: Range<u32>) -> Alarm {
+        let bytes = self.line_bytes();
+        let rest = bytes.get(fault.place.start as usize..range.end as usize).unwrap_or(&[]);
+        let is_word = matches!(rest, [letter, next, ..] if letter.is_ascii_alphabetic()
+            && (next.is_ascii_digit() || matches!(next, b'-' | b'.' | b'#')));
+        let key = match fault.expected {
+            Expected::End if is_word => "macro-and-nc-mixed",
+            Expected::End if rest.first() == Some(&b']') => "opening-bracket-missing",
+            Expected::Value | Expected::Number | Expected::End => "expression-format",
+            Expected::VariableNumber => "variable-number-illegal",
+            Expected::OpeningBracket => "opening-bracket-missing",
+            Expected::ClosingBracket => "closing-bracket-missing",
+            Expected::Comma => "comma-missing",
+            Expected::Arguments => "function-argument-format",
+            Expected::Function => "macro-word-unknown",
+            Expected::LessNesting => "bracket-nesting",
+            Expected::LoopNumber => "loop-number-illegal",
+            Expected::EqualsSign => "equals-sign-missing",
+            Expected::IfForm => "if-format",
+            Expected::WhileForm => "while-format",
+            Expected::Statement => "macro-statement-format",
+        };
+        let place = fault.place.start..fault.place.end.max(fault.place.start + 1);
+        let quote = self.quote(range.start, range.end);
+        self.finish(Diagnostic::alarm(key).at(self.at.span(place.start, place.end)).with("word", quote))
+    }
+
+    /// The alarm of an expression that has no value.
+    #[cold]
+    pub(crate) fn code_fault(&self, fault: CodeFault, place: Range<u32>) -> Alarm {
+        let key = match fault {
+            CodeFault::DivideByZero => "divide-by-zero",
+            CodeFault::Argument => "argument-out-of-range",
+            CodeFault::IntegerOverflow => "macro-integer-overflow",
+            CodeFault::Overflow => "macro-value-overflow",
+            CodeFault::Brackets => "bracket-nesting",
+            CodeFault::NoFunction => "macro-function-unavailable",
+            CodeFault::Arguments => "function-argument-format",
+            CodeFault::BareArgument => "opening-bracket-missing",
+            CodeFault::ThenForm => "if-format",
+            CodeFault::LoopNumber => "loop-number-illegal",
+        };
+        let quote = self.quote(place.start, place.end);
+        self.finish(Diagnostic::alarm(key).at(self.at.span(place.start, place.end)).with("word", quote))
+    }
+}
+
+fn check_loop_number(loop_number: u32, range: &Range<u32>) -> Result<(), (CodeFault, Range<u32>)> {
+    if (1..=3).contains(&loop_number) { Ok(()) } else { Err((CodeFault::LoopNumber, range.clone())) }
+}
