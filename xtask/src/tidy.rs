@@ -70,7 +70,8 @@ fn collect(folder: &Path, prefix: &str, files: &mut Vec<File>) {
                 collect(&entry.path(), &format!("{path}/"), files);
             }
             // What is not UTF-8 is no text: pictures, fonts, programs in other encodings.
-            Ok(kind) if kind.is_file() => {
+            // In a work tree `.git` is a file.
+            Ok(kind) if kind.is_file() && !LEFT_OUT.contains(&name.as_str()) => {
                 files.extend(fs::read_to_string(entry.path()).ok().map(|text| File { path, text }));
             }
             _ => {}
