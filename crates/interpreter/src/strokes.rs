@@ -249,6 +249,13 @@ impl Core {
         let zero = self.tip_zero();
         let machine =
             |place: Position<WorkTip>| Position::<MachineTurret>::new(place.x + zero.x, place.z + zero.z);
+        if self.axes.is_virtual() {
+            // The end in the section. In polar interpolation X is never farther out between the ends; where it comes
+            // nearer to the axis on the way is not looked at.
+            let (real, _) = self.axes.interpolation.axes_at(to, self.axes.v, &Shape::Line, self.axes.at.c);
+            let end = machine(real);
+            return self.check_stretch(Stretch { from: end, to: end, arc: None }, end);
+        }
         let (from, to) = (machine(from), machine(to));
         let whole = Stretch { from, to, arc: None };
         match action {
