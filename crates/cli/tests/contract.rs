@@ -354,7 +354,22 @@ fn controls_are_listed_shown_and_compared() {
     assert_eq!(same.out, "no difference is known\n");
     let ran = turnwright(&["controls", "--diff", "fanuc-0i-tf", "gsk-980tdi", "--format", "json"]);
     let differences: Value = serde_json::from_str(&ran.out).expect("JSON");
-    assert!(differences["differences"].as_array().is_some_and(|list| !list.is_empty()));
+    let of_section = |section: &str| -> Vec<&Value> {
+        let list = differences["differences"].as_array().expect("a list").iter();
+        list.filter(|one| one["section"] == section).collect()
+    };
+    for section in ["policies", "limits", "codes", "parameters", "parameter-numbers", "alarm-numbers"] {
+        assert!(!of_section(section).is_empty(), "{section}");
+    }
+    let names_the_alarm = |list: Vec<&Value>| list.iter().any(|one| one["name"] == "cut-depth-illegal");
+    assert!(names_the_alarm(of_section("alarm-numbers")));
+    // 062 and PS0062 are one number in two spellings.
+    let ran = turnwright(&["controls", "--diff", "fanuc-0i-mate-tb", "fanuc-0i-tf"]);
+    assert!(!ran.out.contains("cut-depth-illegal"), "{}", ran.out);
+    assert!(ran.out.contains("alarm-ids"), "{}", ran.out);
+    assert!(ran.out.contains("arc-end-error") && ran.out.contains("spiral"), "{}", ran.out);
+    let chinese = turnwright(&["controls", "--diff", "fanuc-0i-tf", "gsk-980tdi", "--lang", "zh"]);
+    assert!(chinese.out.contains("编号不同的参数"), "{}", chinese.out);
 }
 
 #[test]

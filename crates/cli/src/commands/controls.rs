@@ -159,6 +159,10 @@ fn scalar(value: &str) -> Value {
     )
 }
 
+/// What is compared, in the order in which it is shown; each has its title in the texts.
+const SECTIONS: [&str; 6] =
+    ["policies", "limits", "codes", "parameters", "parameter-numbers", "alarm-numbers"];
+
 /// One line of what differs: section, name, value on the one, value on the other.
 struct Difference {
     section: &'static str,
@@ -188,26 +192,62 @@ fn differences([one, other]: &[Control; 2], speech: Speech) -> Vec<Difference> {
     let ids = |control: &Control| vec![("alarm-ids".to_string(), kebab(&format!("{:?}", control.alarm_ids)))];
     compare("policies", [ids(one), policies(one)].concat(), [ids(other), policies(other)].concat());
     compare("limits", limits(one), limits(other));
-    let by_name = |control: &Control| -> Vec<(String, String)> {
-        parameters(control, speech)
-            .into_iter()
-            .map(|p| (p.title, format!("{} = {}", p.number, p.value)))
+    let stated = |control: &Control| -> Vec<ParameterFacts> {
+        let shown = parameters(control, speech).into_iter();
+        shown
+            .map(|one| ParameterFacts { title: one.titled(), number: one.number, value: one.value })
             .collect()
     };
-    let (left, right) = (by_name(one), by_name(other));
-    // A parameter whose number alone differs behaves alike.
-    let value_of = |text: &str| text.split_once(" = ").map_or(String::new(), |(_, value)| value.to_string());
-    let behaves_alike = |name: &str| {
-        let of =
-            |fields: &[(String, String)]| fields.iter().find(|(n, _)| n == name).map(|(_, v)| value_of(v));
-        of(&left).is_some() && of(&left) == of(&right)
+    let (left, right) = (stated(one), stated(other));
+    // A parameter whose number alone differs behaves alike: that is a list of its own.
+    let value_of = |facts: &[ParameterFacts], title: &str| {
+        facts.iter().find(|facts| facts.title == title).map(|facts| facts.value.clone())
     };
-    let keep = |fields: &[(String, String)]| -> Vec<(String, String)> {
-        fields.iter().filter(|(name, _)| !behaves_alike(name)).cloned().collect()
+    let behaves_alike =
+        |title: &str| value_of(&left, title).is_some() && value_of(&left, title) == value_of(&right, title);
+    let differing = |facts: &[ParameterFacts]| -> Vec<(String, String)> {
+        let facts = facts.iter().filter(|facts| !behaves_alike(&facts.title));
+        facts.map(|facts| (facts.title.clone(), format!("{} = {}", facts.number, facts.value))).collect()
     };
-    compare("parameters", keep(&left), keep(&right));
+    let numbers = |facts: &[ParameterFacts]| -> Vec<(String, String)> {
+        let facts = facts.iter().filter(|facts| behaves_alike(&facts.title));
+        facts.map(|facts| (facts.title.clone(), facts.number.clone())).collect()
+    };
+    compare("parameters", differing(&left), differing(&right));
+    compare("parameter-numbers", numbers(&left), numbers(&right));
     compare("codes", codes(one, speech), codes(other, speech));
+    let messages = speech.messages();
+    let mut keys: Vec<&str> = messages.keys().collect();
+    keys.sort_unstable();
+    // 062 and PS0062 are one number in two spellings; the policy above says so once.
+    let is_one_number = |key: &&str| {
+        let number = |control: &Control| messages.id(key, control.alarm_ids).map(plain_number);
+        number(one) == number(other)
+    };
+    keys.retain(|key| !is_one_number(key));
+    let ids = |control: &Control| -> Vec<(String, String)> {
+        let id = |key: &&str| messages.id(key, control.alarm_ids).unwrap_or("-").to_string();
+        keys.iter().map(|key| ((*key).to_string(), id(key))).collect()
+    };
+    compare("alarm-numbers", ids(one), ids(other));
     found
+}
+
+/// A parameter as it is compared.
+struct ParameterFacts {
+    title: String,
+    number: String,
+    value: String,
+}
+
+/// An alarm number without what its family puts before it: `062` and `PS0062` are 62. Names stay.
+fn plain_number(id: &str) -> &str {
+    let digits = id.trim_start_matches(|c: char| c.is_ascii_uppercase());
+    if digits.bytes().all(|byte| byte.is_ascii_digit()) && !id.starts_with('T') {
+        digits.trim_start_matches('0')
+    } else {
+        id
+    }
 }
 
 fn difference_text(controls: &[Control; 2], speech: Speech) -> String {
@@ -216,7 +256,7 @@ fn difference_text(controls: &[Control; 2], speech: Speech) -> String {
         return format!("{}\n", speech.get("no-difference"));
     }
     let mut out = String::new();
-    for section in ["policies", "limits", "parameters", "codes"] {
+    for section in SECTIONS {
         let of_section: Vec<_> = differences.iter().filter(|one| one.section == section).collect();
         if of_section.is_empty() {
             continue;
@@ -256,6 +296,16 @@ pub(super) struct ShownParameter {
     pub(super) title: String,
     /// What it changes.
     pub(super) effect: String,
+}
+
+impl ShownParameter {
+    /// Its name, with the axis where each has its own value.
+    fn titled(&self) -> String {
+        match self.number.split_once('.') {
+            Some((_, axis)) => format!("{} {axis}", self.title),
+            None => self.title.clone(),
+        }
+    }
 }
 
 /// The parameters of a control.
