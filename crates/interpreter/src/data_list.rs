@@ -137,9 +137,7 @@ impl Core {
         };
         self.settings.store(&mut self.control.parameters);
         match (under.whole, block.word(b'Q')) {
-            (Some((key, parameter)), None) => {
-                self.write_parameter(&number.to_string(), key, parameter, axis, value)?;
-            }
+            (Some((_, parameter)), None) => self.write_parameter(number, parameter, axis, value)?,
             (None, Some(bit)) => {
                 let place = self.whole(bit, 7)? as u8;
                 let state = self.whole(value, 1)?;
@@ -165,8 +163,7 @@ impl Core {
     /// A parameter that has its number to itself.
     fn write_parameter(
         &mut self,
-        number: &str,
-        key: &str,
+        number: u32,
         parameter: &Parameter,
         axis: Option<Axis>,
         value: &Word,
@@ -178,8 +175,7 @@ impl Core {
         } else {
             digits as f64
         };
-        debug_assert!(!key.is_empty());
-        self.set_parameter(number, parameter, axis, &amount.to_string(), value)
+        self.set_parameter(&number.to_string(), parameter, axis, &amount.to_string(), value)
     }
 
     fn write_bit(

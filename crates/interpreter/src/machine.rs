@@ -303,6 +303,7 @@ impl Interpreter {
         }
         core.modal.feed = core.initial_feed();
         core.modal.is_incremental = core.starts_incremental();
+        core.modal.offset_in_force = core.offset_called();
         core.start_at_reference();
         core.look_at_moves();
         Ok(Self { core, block: Block::new(), alarm: None })

@@ -150,8 +150,8 @@ impl Interpreter {
     pub fn reset(&mut self) {
         self.core.out.clear();
         self.core.sync = None;
-        self.core.drop_work();
         let place = self.core.tip;
+        self.core.drop_work();
         self.core.reset_modes();
         self.core.out.clear();
         self.core.has_untold_place |= self.core.tip != place;
