@@ -8,9 +8,11 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use turnwright_control::{AxisPair, Setup};
 use turnwright_diagnostics::{Diagnostic, SourceId};
-use turnwright_interpreter::{DateTime, Environment, ProgramName, ReadFault};
+use turnwright_interpreter::{DateTime, Environment, ProgramName, ReadFault, SignalMove};
 use turnwright_syntax::find_line_end;
+use turnwright_units::{Position, WorkTip};
 
 use crate::arguments::Machine;
 use crate::finding::Finding;
@@ -245,18 +247,26 @@ pub(crate) struct Panel<'a> {
     skips: [bool; 10],
     stops_optionally: bool,
     speech: Speech,
+    setup: Setup,
 }
 
 impl<'a> Panel<'a> {
     /// The text and the switches of the command line.
-    pub(crate) fn new(text: &'a ProgramText, machine: &Machine) -> Self {
+    pub(crate) fn new(text: &'a ProgramText, machine: &Machine, setup: &Setup) -> Self {
         let mut skips = [false; 10];
         for switch in &machine.skip {
             skips[usize::from(*switch % 10)] = true;
         }
         // Why a neighbour cannot be opened is not said: the call says that there is no such program.
         let speech = Speech { language: turnwright_control::Language::English };
-        Self { text, others: Vec::new(), skips, stops_optionally: machine.optional_stop, speech }
+        Self {
+            text,
+            others: Vec::new(),
+            skips,
+            stops_optionally: machine.optional_stop,
+            speech,
+            setup: setup.clone(),
+        }
     }
 
     /// A text by its number.
@@ -325,6 +335,12 @@ impl Environment for Panel<'_> {
 
     fn skips(&self, switch: u8) -> bool {
         self.skips.get(usize::from(switch)).copied().unwrap_or(false)
+    }
+
+    fn signal(&mut self, wait: &SignalMove) -> Option<f64> {
+        let pair =
+            |place: Position<WorkTip>| AxisPair { x: place.x.to_diameter().0.to_mm(), z: place.z.to_mm() };
+        self.setup.signal(wait.line, wait.input, pair(wait.from), pair(wait.to))
     }
 
     fn stops_optionally(&self) -> bool {

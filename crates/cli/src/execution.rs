@@ -76,7 +76,7 @@ impl<'a> Execution<'a> {
             .map_err(|fault| session.setup_fault(&fault))?;
         Ok(Self {
             interpreter,
-            panel: Panel::new(text, machine),
+            panel: Panel::new(text, machine, &session.setup),
             text,
             denies_warnings: machine.deny == Some(Deny::Warnings),
             alarm: None,

@@ -12,6 +12,7 @@ mod parameter_text;
 mod parameters;
 pub mod policy;
 mod setup;
+mod signal;
 mod suggest;
 
 use policy::{AlarmIds, Limits, Policies};
@@ -27,6 +28,7 @@ pub use setup::{
     AxisPair, LinearAxis, Machine, MachineAxes, Offset, OffsetRow, RotaryAxis, Setup, SetupFault,
     machine_names,
 };
+pub use signal::Signal;
 pub use suggest::nearest;
 
 pub(crate) mod embedded {

@@ -544,6 +544,8 @@ pub struct Limits {
     pub dwell_inputs: u8,
     /// Highest offset number.
     pub offset_number_max: u32,
+    /// Inputs that a skip move can name.
+    pub skip_inputs: u8,
     /// Additional work coordinate systems.
     pub additional_work_systems: u16,
     /// Digits of a value in the offset tables.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
+use crate::signal::Signal;
 use crate::{embedded, nearest};
 
 /// A pair of axis values in millimetres; X as a diameter.
@@ -195,6 +196,9 @@ pub struct Setup {
     /// How the machine stands when the program starts.
     #[serde(default)]
     pub start: Start,
+    /// Signals that end skip and measuring moves; the first that fits a move counts.
+    #[serde(default)]
+    pub skip: Vec<Signal>,
     /// Stored zeros, mm, X as a diameter: `G54` to `G59`, `"G54.1 P1"` and so on, the external offset `EXT` and
     /// the workpiece shift `SHIFT`. They are what the control stores, counted from the machine's `reference`: with
     /// that at X0 Z0 they are true machine coordinates.
@@ -275,7 +279,7 @@ impl Setup {
     /// # Errors
     /// What cannot be read, unknown keys with the known ones.
     pub fn parse(text: &str) -> Result<Self, SetupFault> {
-        toml::from_str(text).map_err(|error| {
+        let setup: Self = toml::from_str(text).map_err(|error| {
             let start = error.span().map_or(0, |span| span.start);
             let line = if error.span().is_some() {
                 text.get(..start).unwrap_or("").matches('\n').count() as u32 + 1
@@ -283,7 +287,17 @@ impl Setup {
                 0
             };
             SetupFault { message: error.message().to_string(), line }
-        })
+        })?;
+        match setup.skip.iter().find_map(Signal::fault) {
+            Some(message) => Err(SetupFault { message: message.to_string(), line: 0 }),
+            None => Ok(setup),
+        }
+    }
+
+    /// After which part of a move, of a block at `line` and for an input, a signal comes. Places are work
+    /// coordinates, X as a diameter.
+    pub fn signal(&self, line: u32, input: Option<u8>, from: AxisPair, to: AxisPair) -> Option<f64> {
+        self.skip.iter().find_map(|signal| signal.part(line, input, from, to))
     }
 
     /// Parameters as number and value, in words as a user would type them.

@@ -54,6 +54,7 @@ pub use parts::Parts;
 pub use punch::{DataFault, DataImport, export_offsets, export_work_zeros, import_data};
 pub use text::LINE_BYTES_MAX;
 use turnwright_diagnostics::SourceId;
+use turnwright_units::{Position, WorkTip};
 
 /// Why a text could not be read; the caller knows more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +70,19 @@ pub struct DateTime {
     pub hour: u8,
     pub minute: u8,
     pub second: u8,
+}
+
+/// A straight move that a signal may end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SignalMove {
+    /// The line of its block.
+    pub line: u32,
+    /// The input that the program names.
+    pub input: Option<u8>,
+    /// Where it starts.
+    pub from: Position<WorkTip>,
+    /// Where it ends without a signal.
+    pub to: Position<WorkTip>,
 }
 
 /// The world outside: texts, switches and signals.
@@ -112,6 +126,12 @@ pub trait Environment {
     /// Whether a signal asks for the program of a macro interrupt. Asked before each block while one is allowed.
     fn interrupts(&mut self) -> bool {
         false
+    }
+
+    /// After which part of a move (0 to 1) the signal that it waits for comes; `None` when it does not.
+    fn signal(&mut self, wait: &SignalMove) -> Option<f64> {
+        let _ = wait;
+        None
     }
 
     /// Whether the optional stop is on.

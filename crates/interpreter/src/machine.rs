@@ -117,6 +117,8 @@ pub(crate) struct Core {
     pub(crate) strokes: Strokes,
     /// From program to work coordinates.
     pub(crate) transform: Transform,
+    /// Where the last skip move ended.
+    pub(crate) skip_place: Position<WorkTip>,
     /// Moves are transformed, checked against strokes, or refused: see [`Core::look_at_moves`].
     pub(crate) looks_at_moves: bool,
     /// Rapid rates of X and Z.
@@ -252,6 +254,7 @@ impl Interpreter {
             homing: Homing { is_made: setup.start.homed, by_way_of: None },
             strokes,
             transform: Transform::default(),
+            skip_place: modal.position,
             looks_at_moves: false,
             rapid_rates_mm_per_min: [machine.rapid_x_mm_per_min, machine.rapid_z_mm_per_min],
             offsets,

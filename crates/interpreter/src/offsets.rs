@@ -240,6 +240,11 @@ impl OffsetSettings {
 }
 
 impl OffsetSettings {
+    /// Whether X of the wear table is a diameter.
+    pub(crate) const fn wear_x_is_diameter(&self) -> bool {
+        !(self.x_is_radius || self.wear_x_is_radius)
+    }
+
     /// Whether offset number 0 takes the geometry away too: a movement always, a shift by parameter.
     pub(crate) const fn zero_takes_geometry(&self) -> bool {
         self.zero_cancels_geometry || self.geometry_moves

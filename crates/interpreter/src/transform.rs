@@ -40,11 +40,11 @@ impl Rotation {
     /// To the nanometre.
     fn turned(&self, place: Position<WorkTip>, sin: f64) -> Position<WorkTip> {
         let (x, z) = (place.x - self.centre.x, place.z - self.centre.z);
-        let (x_nm, z_nm) = (x.0.nm() as f64, z.nm() as f64);
-        let nm = |value: f64| Length::from_nm(value.round() as i64);
+        let (x_mm, z_mm) = (x.to_mm(), z.to_mm());
+        let nm = |mm: f64| Length::from_nm((mm * 1e6).round() as i64);
         Position::new(
-            self.centre.x + Radius(nm(z_nm * sin + x_nm * self.cos)),
-            self.centre.z + nm(z_nm * self.cos - x_nm * sin),
+            self.centre.x + Radius(nm(z_mm * sin + x_mm * self.cos)),
+            self.centre.z + nm(z_mm * self.cos - x_mm * sin),
         )
     }
 }

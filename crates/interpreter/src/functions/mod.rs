@@ -17,6 +17,7 @@ mod linear;
 mod look_ahead;
 mod machine_coordinates;
 mod macro_call;
+mod measuring;
 mod modes;
 mod multi_thread;
 mod path_mode;
@@ -28,6 +29,7 @@ mod rapid;
 pub(crate) mod reference_return;
 mod rough;
 mod single_cycles;
+mod skip;
 mod stroke_check;
 mod thread;
 mod transforms;
@@ -282,6 +284,9 @@ static ALL: &[&Function] = &[
     &coordinate_setting::COORDINATE_PRESET,
     &coordinate_setting::LOCAL_COORDINATES,
     &machine_coordinates::MACHINE_COORDINATES,
+    &skip::SKIP,
+    &measuring::MEASURING_X,
+    &measuring::MEASURING_Z,
     &reference_return::REFERENCE_RETURN,
     &reference_return::SECOND_REFERENCE_RETURN,
     &reference_return::REFERENCE_LEAVE,

@@ -13,8 +13,8 @@ use crate::modal::{FeedMode, SpeedMode};
 use crate::report::Alarm;
 use crate::zeros::STANDARD_SYSTEMS;
 
-pub(super) static INCH: Function = Function::mode("inch", |core, _| units(core, true));
-pub(super) static METRIC: Function = Function::mode("metric", |core, _| units(core, false));
+pub(super) static INCH: Function = Function::mode("inch", |core, call| units(core, call, true));
+pub(super) static METRIC: Function = Function::mode("metric", |core, call| units(core, call, false));
 
 pub(super) static NOSE_COMPENSATION_OFF: Function =
     Function::mode("nose-compensation-off", |_, _| Ok(())).allowed_in_figure().allowed_in_rotation();
@@ -55,7 +55,22 @@ pub(super) static FEED_PER_REVOLUTION: Function =
 pub(super) static ABSOLUTE: Function = Function::mode("absolute", |core, _| increments(core, false));
 pub(super) static INCREMENTAL: Function = Function::mode("incremental", |core, _| increments(core, true));
 
-fn units(core: &mut Core, is_inch: bool) -> Result<(), Alarm> {
+fn units(core: &mut Core, call: &mut Call<'_>, is_inch: bool) -> Result<(), Alarm> {
+    if core.modal.is_inch == is_inch {
+        return Ok(());
+    }
+    // Another code in the block may end the cycle.
+    let is_alone = call.block.words.iter().filter(|word| word.address == b'G').count() == 1;
+    let is_in_cycle = core.modal.motion.get().repeats || core.is_in_hole_cycle();
+    if core.is_compensating() || (is_in_cycle && is_alone) {
+        return Err(core.alarm_at("unit-change-illegal", call.word));
+    }
+    let has_moved = core.machine_position() != core.zeros.reference[0];
+    if (has_moved || call.block.present() & super::AXES != 0)
+        && let Some(word) = call.word
+    {
+        core.warn("unit-change-late", word);
+    }
     let from = core.modal.increment(&core.settings);
     core.modal.is_inch = is_inch;
     let to = core.modal.increment(&core.settings);

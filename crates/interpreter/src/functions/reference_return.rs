@@ -188,11 +188,16 @@ impl Core {
 
     /// Ways to the reference point break a hole cycle off.
     fn refuse_in_hole_cycle(&self, word: Option<&Word>) -> Result<(), Alarm> {
-        const HOLE_CYCLES: usize = 10;
-        if self.modal.in_force.codes[HOLE_CYCLES] == self.dispatch.codes_at_power_on[HOLE_CYCLES] {
-            Ok(())
-        } else {
+        if self.is_in_hole_cycle() {
             Err(self.alarm_at("reference-code-in-hole-cycle", word))
+        } else {
+            Ok(())
         }
+    }
+
+    /// A hole cycle is in force: its group holds another code than at power-on.
+    pub(super) fn is_in_hole_cycle(&self) -> bool {
+        const HOLE_CYCLES: usize = 10;
+        self.modal.in_force.codes[HOLE_CYCLES] != self.dispatch.codes_at_power_on[HOLE_CYCLES]
     }
 }

@@ -4,14 +4,16 @@
 use std::sync::OnceLock;
 
 use turnwright_canon::{Command, write_listing};
-use turnwright_control::{Control, Language, Messages, Setup};
+use turnwright_control::{AxisPair, Control, Language, Messages, Setup};
 use turnwright_diagnostics::{Diagnostic, SourceId};
-use turnwright_interpreter::{Environment, Interpreter, Options, ReadFault, Step};
+use turnwright_interpreter::{Environment, Interpreter, Options, ReadFault, SignalMove, Step};
+use turnwright_units::{Position, WorkTip};
 
 /// A text in memory, and switches.
 pub struct Memory<'a> {
     pub text: &'a [u8],
     pub skips: &'a [u8],
+    pub setup: Option<&'a Setup>,
 }
 
 impl Environment for Memory<'_> {
@@ -24,6 +26,12 @@ impl Environment for Memory<'_> {
 
     fn skips(&self, switch: u8) -> bool {
         self.skips.contains(&switch)
+    }
+
+    fn signal(&mut self, wait: &SignalMove) -> Option<f64> {
+        let pair =
+            |place: Position<WorkTip>| AxisPair { x: place.x.to_diameter().0.to_mm(), z: place.z.to_mm() };
+        self.setup?.signal(wait.line, wait.input, pair(wait.from), pair(wait.to))
     }
 }
 
@@ -78,7 +86,7 @@ pub fn run_on(mut control: Control, text: &[u8], conditions: &Conditions) -> Run
     let mut interpreter = Interpreter::new(control.clone(), &setup, SourceId(0), options)
         .unwrap_or_else(|fault| panic!("{fault:?}"));
     let decimals = interpreter.decimals();
-    let mut environment = Memory { text, skips: &conditions.skips };
+    let mut environment = Memory { text, skips: &conditions.skips, setup: Some(&setup) };
     let mut run = Run { commands: Vec::new(), alarm: None, warnings: Vec::new(), control, decimals };
     let mut restarts = conditions.restarts;
     loop {
