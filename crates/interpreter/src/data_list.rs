@@ -248,7 +248,6 @@ impl Core {
         let Some(variable) = block.word(b'R') else {
             return Err(self.alarm_block("parameter-input-format"));
         };
-        self.whole(variable, 99_999)?;
         let whole = self.control.parameters.under_number(number).and_then(|under| under.whole);
         let Some((key, parameter)) = whole else {
             // Of a word of bits only some are known.
@@ -263,8 +262,17 @@ impl Core {
     }
 
     /// Puts a value into the variable that a word names.
-    fn give_to_variable(&mut self, variable: &Word, _value: f64) -> Result<(), Alarm> {
-        Err(self.not_supported("data-setting", variable))
+    fn give_to_variable(&mut self, variable: &Word, value: f64) -> Result<(), Alarm> {
+        let number = f64::from(self.whole(variable, 99_999)?);
+        let Some(slot) = self.macros.variables.slot(number) else {
+            return Err(self.alarm("variable-number-illegal", variable));
+        };
+        if self.macros.is_protected(slot) {
+            return Err(self.alarm("variable-write-protected", variable));
+        }
+        let value = self.macros.machine.stored(value);
+        self.macros.variables.set(slot, value);
+        Ok(())
     }
 
     /// Opens the list of tool groups: all groups are registered anew, P1 adds groups, P2 deletes some.

@@ -105,7 +105,7 @@ impl Macros {
     }
 
     /// Whether a parameter keeps programs from writing a variable.
-    fn is_protected(&self, slot: u16) -> bool {
+    pub(crate) fn is_protected(&self, slot: u16) -> bool {
         self.protected.is_some_and(|(first, last)| (first..=last).contains(&slot))
     }
 }
