@@ -70,6 +70,20 @@ policies! {
         /// The control waits until it turns; a warning says so.
         Warn,
     }
+    /// Feed per revolution.
+    feed_per_revolution: FeedPerRevolution {
+        /// It exists.
+        Available,
+        /// It is an option that this control does not have.
+        Alarm,
+    }
+    /// Two S words in one block.
+    repeated_speed_word: RepeatedSpeedWord {
+        /// As any other address twice in a block.
+        AsOtherAddresses,
+        /// Refused.
+        Alarm,
+    }
     /// Program number zero.
     program_zero: ProgramZero {
         /// Refused.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use crate::signal::Signal;
-use crate::{embedded, nearest};
+use crate::{Parameters, embedded, nearest};
 
 /// A pair of axis values in millimetres; X as a diameter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
@@ -271,6 +271,25 @@ fn inline(value: &toml::Value) -> String {
 /// Names of the machines in `data/machines`.
 pub fn machine_names() -> impl Iterator<Item = &'static str> {
     embedded::MACHINES.iter().map(|(name, _)| *name)
+}
+
+impl Machine {
+    /// The machine as the control's parameters limit it: cutting feed, spindle speed, and the lowest speed of
+    /// constant surface speed. A parameter of 0 leaves the machine's own value.
+    #[must_use]
+    pub fn limited_by(mut self, parameters: &Parameters) -> Self {
+        let set = |name| Some(parameters.value(name)).filter(|value| *value > 0.0);
+        if let Some(feed) = set("cutting-feed-maximum") {
+            self.cutting_max_mm_per_min = feed;
+        }
+        if let Some(rpm) = set("spindle-maximum-rpm") {
+            self.rpm_max = rpm as u32;
+        }
+        if let Some(rpm) = set("surface-speed-minimum-rpm") {
+            self.rpm_min_surface = rpm as u32;
+        }
+        self
+    }
 }
 
 impl Setup {

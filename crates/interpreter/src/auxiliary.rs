@@ -150,6 +150,7 @@ impl Core {
                 auxiliary.acts_behind |= stops_behind;
             }
             other => {
+                self.change_gear(other);
                 auxiliary.others[usize::from(auxiliary.other_count)] = other;
                 auxiliary.other_count += 1;
             }

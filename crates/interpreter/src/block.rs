@@ -4,11 +4,9 @@
 //! the auxiliary functions that wait for the end of the move. Source: execution order inside a block, both
 //! families.
 
-use turnwright_control::policy::{
-    NestedComment, OneShotWithMotion, ProgramZero, RepeatedAddress, SkipInsideBlock, UnnumberedProgram,
-};
-use turnwright_diagnostics::{Diagnostic, Severity};
-use turnwright_syntax::{Block, ExtentKind, Fault, FaultKind, Word, scan_block};
+use turnwright_control::policy::{OneShotWithMotion, ProgramZero, SkipInsideBlock};
+use turnwright_diagnostics::Diagnostic;
+use turnwright_syntax::{Block, ExtentKind, Word, scan_block};
 
 use crate::Environment;
 use crate::auxiliary::{Auxiliary, Flow};
@@ -370,68 +368,6 @@ impl Core {
         Ok(())
     }
 
-    /// The mark of a block skip behind words, where the control knows it only at the head.
-    fn skip_inside_block(&self, block: &Block) -> Alarm {
-        let head = block.words.iter().find(|word| word.address != b'N').map_or(0, |word| word.start);
-        let mark = block.extents.iter().find(|extent| extent.kind == ExtentKind::Skip && extent.start > head);
-        let (start, end) =
-            mark.map_or((self.at.first_byte, self.at.last_byte), |mark| (mark.start, mark.end));
-        let diagnostic = Diagnostic::alarm("not-a-word").at(self.at.span(start, end));
-        self.finish(diagnostic.with("word", self.quote(start, end)))
-    }
-
-    #[cold]
-    fn report_faults(&mut self, block: &Block) -> Result<(), Alarm> {
-        for fault in &block.faults {
-            let (key, severity) = self.fault_key(fault);
-            if severity == Severity::Alarm {
-                return Err(self.fault_alarm(key, fault));
-            }
-            // What a whole file is written with is said once.
-            let line = if is_habit(fault.kind) { 0 } else { self.at.line };
-            if !self.already_said(key, line) {
-                let place = self.at.span(fault.start, fault.end);
-                let quote = self.quote(fault.start, fault.end);
-                self.say(Diagnostic::new(severity, key).at(place).with("word", quote));
-            }
-        }
-        Ok(())
-    }
-
-    /// The diagnostic of a fault that the reader found.
-    fn fault_key(&self, fault: &Fault) -> (&'static str, Severity) {
-        use Severity::{Alarm, Warning};
-        match fault.kind {
-            FaultKind::NumberTooLong => ("number-too-long", Alarm),
-            FaultKind::TwoPoints => ("two-points", Alarm),
-            FaultKind::TwoSigns => ("two-signs", Alarm),
-            FaultKind::AddressWithoutValue => {
-                let letter = self.text.bytes(&self.line).get(fault.start as usize);
-                match letter.map(u8::to_ascii_uppercase) {
-                    Some(b'N' | b'O') => ("number-missing-after-o-or-n", Alarm),
-                    _ => ("address-without-value", Alarm),
-                }
-            }
-            FaultKind::NotAWord => ("not-a-word", Alarm),
-            FaultKind::DecimalComma => ("decimal-comma", Alarm),
-            FaultKind::LetterO => ("letter-o-for-zero", Alarm),
-            FaultKind::StrayBracket => ("stray-bracket", Alarm),
-            FaultKind::TooManyWords => ("too-many-words", Alarm),
-            FaultKind::UnclosedComment => ("unclosed-comment", Warning),
-            FaultKind::NestedComment if self.control.policies.nested_comment == NestedComment::Alarm => {
-                ("nested-comment", Alarm)
-            }
-            FaultKind::NestedComment => ("nested-comment", Warning),
-            FaultKind::TextAfterSemicolon => ("text-after-semicolon", Warning),
-            FaultKind::FullWidth => ("full-width-character", Warning),
-        }
-    }
-
-    fn fault_alarm(&self, key: &'static str, fault: &Fault) -> Alarm {
-        let quote = self.quote(fault.start, fault.end);
-        self.finish(Diagnostic::alarm(key).at(self.at.span(fault.start, fault.end)).with("word", quote))
-    }
-
     /// Executes the words of a block.
     #[inline]
     pub(crate) fn execute(&mut self, block: &Block, environment: &mut dyn Environment) -> Result<(), Alarm> {
@@ -647,35 +583,6 @@ impl Core {
         Ok(false)
     }
 
-    /// The same address twice: the last counts, unless the parameter makes it an alarm.
-    #[cold]
-    fn repeated_addresses(&mut self, block: &Block) -> Result<(), Alarm> {
-        let same = |a: &Word, b: &Word| {
-            (a.address, a.comma) == (b.address, b.comma) && !matches!(a.address, b'G' | b'M')
-        };
-        let words = &block.words;
-        for (place, first) in words.iter().enumerate() {
-            let Some(again) = words[place + 1..].iter().find(|word| same(first, word)) else { continue };
-            if self.settings.duplicate_word_alarm
-                || self.control.policies.repeated_address == RepeatedAddress::Alarm
-            {
-                return Err(self.alarm("duplicate-word", again));
-            }
-            self.warn("repeated-address", first);
-        }
-        Ok(())
-    }
-
-    /// Two codes of one group: the last counts, unless the parameter makes it an alarm.
-    #[cold]
-    fn same_group(&mut self, block: &Block, first: u8, word: &Word) -> Result<(), Alarm> {
-        if self.settings.duplicate_word_alarm {
-            return Err(self.alarm("duplicate-word", word));
-        }
-        self.warn("same-group-codes", &block.words[usize::from(first)]);
-        Ok(())
-    }
-
     #[cold]
     fn refuse_code(&self, code: u16, word: &Word) -> Alarm {
         let functions = turnwright_control::Functions::load();
@@ -730,12 +637,24 @@ impl Core {
             foreign |= block.present() & function.letters & !other_letters;
         }
         if foreign != 0 {
+            foreign &= !self.spindle_selection(block);
+        }
+        if foreign != 0 {
             return Err(self.foreign_letter(block, foreign, function));
         }
         if block.has_comma && (is_idle || !matches!(function.kind, Kind::Motion(_))) {
             return Err(self.comma_without_line(block));
         }
         Ok(())
+    }
+
+    /// P where it selects the spindle.
+    #[cold]
+    fn spindle_selection(&self, block: &Block) -> u32 {
+        match block.word(b'P') {
+            Some(word) if self.selects_spindle(word) => Block::bit(b'P'),
+            _ => 0,
+        }
     }
 
     /// A word behind a comma belongs to a straight cut with an end point.
@@ -819,6 +738,9 @@ impl Core {
             self.modal.spindle = state;
         }
         self.emit_spindle();
+        if block.has(b'S') || auxiliary.spindle.is_some() {
+            self.check_speed();
+        }
         Ok(())
     }
 
@@ -869,17 +791,6 @@ impl Core {
         Ok(())
     }
 
-    /// The first block of a program: without O its sequence number may name the program.
-    #[cold]
-    fn first_block(&mut self) {
-        self.expects_program_number = false;
-        let takes_sequence =
-            self.control.policies.unnumbered_program == UnnumberedProgram::TakesFirstSequence;
-        if takes_sequence && self.program.is_none() && self.frames.is_empty() {
-            self.program = self.at.sequence;
-        }
-    }
-
     /// A code that acts once beside a motion code: it takes the axis words, or both are refused.
     #[cold]
     fn one_shot_with_motion(&self, block: &Block, codes: &Codes) -> Result<(), Alarm> {
@@ -923,9 +834,4 @@ const SPEED_OR_TOOL: u32 = Block::bit(b'S') | Block::bit(b'T');
 /// Whether one of the switches in `marks` is on.
 fn skips(marks: u16, environment: &dyn Environment) -> bool {
     (1..=9u8).any(|switch| marks & (1 << switch) != 0 && environment.skips(switch))
-}
-
-/// Ways of writing that a file has everywhere or nowhere.
-const fn is_habit(kind: FaultKind) -> bool {
-    matches!(kind, FaultKind::FullWidth | FaultKind::TextAfterSemicolon)
 }

@@ -21,6 +21,7 @@ mod cache;
 mod coordinates;
 mod corner;
 mod data_list;
+mod faults;
 mod figure;
 mod flow;
 mod functions;

@@ -28,6 +28,7 @@ use crate::moves::ActiveCycle;
 use crate::offsets::{OffsetInForce, OffsetTables};
 use crate::parts::Parts;
 use crate::report::Alarm;
+use crate::spindle::MachineLimits;
 use crate::strokes::Strokes;
 use crate::text::{Cursor, Line, Text};
 use crate::transform::Transform;
@@ -182,6 +183,8 @@ pub(crate) struct Core {
     pub(crate) warnings_given: usize,
     /// What was said by key, line and column; column 0 for the whole line, line 0 for the whole run.
     pub(crate) said: HashSet<(&'static str, u32, u32)>,
+    /// What the machine can do, as its parameters limit it.
+    pub(crate) machine_limits: MachineLimits,
     /// The warning about a standing spindle was given.
     pub(crate) said_spindle_stands: bool,
 }
@@ -232,6 +235,7 @@ impl Interpreter {
             surface: SurfaceSpeed::from_m_per_min(0),
             rpm_max: None,
             spindle: Default::default(),
+            gear: 1,
             tool: 0,
             offset: 0,
             geometry: 0,
@@ -242,6 +246,7 @@ impl Interpreter {
             stroke_two_is_on: settings.stroke_two_at_power_on,
             in_force: InForce::new(dispatch.codes_at_power_on),
         };
+        let machine_limits = MachineLimits::new(&setup.machine()?.limited_by(&control.parameters));
         let parts = Parts::new(&control.parameters);
         let start = Cursor { source, offset: 0, line: 1 };
         let mut core = Core {
@@ -299,6 +304,7 @@ impl Interpreter {
             warnings: Vec::new(),
             warnings_given: 0,
             said: HashSet::new(),
+            machine_limits,
             said_spindle_stands: false,
         };
         if setup.machine.is_some() || setup.rates.contains_key("reference") {

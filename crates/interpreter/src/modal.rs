@@ -52,6 +52,8 @@ pub(crate) struct Modal {
     pub(crate) surface: SurfaceSpeed,
     pub(crate) rpm_max: Option<Rpm>,
     pub(crate) spindle: SpindleState,
+    /// Gear of the spindle, 1 to 4.
+    pub(crate) gear: u8,
     pub(crate) tool: u32,
     pub(crate) offset: u32,
     /// Number of the geometry offset in force; that of the wear is `offset`.
@@ -112,6 +114,14 @@ pub(crate) struct Settings {
     pub(crate) several_auxiliary: bool,
     /// Largest number of an M word.
     pub(crate) auxiliary_max: u32,
+    /// Of the spindle by parameter, in any mode and gear; `None` without.
+    pub(crate) rpm_max: Option<Rpm>,
+    /// Of gears 1 to 4; `None` without.
+    pub(crate) gear_rpm_max: [Option<Rpm>; 4],
+    pub(crate) surface_speed_available: bool,
+    /// Number of the axis whose coordinate gives the diameter; 0 and 1 are X.
+    pub(crate) surface_speed_axis: u32,
+    pub(crate) spindle_selection_code: u32,
     /// Largest number of an S word.
     pub(crate) speed_max: u32,
     pub(crate) linear_at_power_on: bool,
@@ -180,6 +190,7 @@ impl Settings {
         let bit = |name| parameters.bit(name);
         let mm = |name: &str| Length::from_nm((parameters.value(name) * 1e6).round() as i64);
         let count = |name: &str| parameters.value(name).clamp(0.0, 1e9) as u32;
+        let rpm = |name: &str| Some(Rpm(count(name))).filter(|rpm| rpm.0 > 0);
         let (metric_increment, inch_increment) = if bit("least-input-increment-c") {
             (LeastIncrement::METRIC_C, LeastIncrement::INCH_C)
         } else if bit("least-input-increment-a") {
@@ -223,6 +234,16 @@ impl Settings {
             duplicate_word_alarm: bit("duplicate-word-alarm"),
             several_auxiliary: bit("several-auxiliary-codes"),
             auxiliary_max: 10u32.pow(count("auxiliary-digits").clamp(2, 8)) - 1,
+            rpm_max: rpm("spindle-maximum-rpm"),
+            gear_rpm_max: [
+                rpm("gear-1-maximum-rpm"),
+                rpm("gear-2-maximum-rpm"),
+                rpm("gear-3-maximum-rpm"),
+                rpm("gear-4-maximum-rpm"),
+            ],
+            surface_speed_available: bit("surface-speed-available"),
+            surface_speed_axis: count("surface-speed-axis"),
+            spindle_selection_code: count("spindle-selection-code"),
             speed_max: 10u32.pow(count("spindle-digits").clamp(1, 8)) - 1,
             linear_at_power_on: bit("linear-at-power-on"),
             incremental_at_power_on: bit("incremental-at-power-on"),

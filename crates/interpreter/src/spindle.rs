@@ -1,14 +1,46 @@
 //! S words, speed modes and limits.
 //!
+//! S counts turns a minute, or with constant surface speed metres (feet) a minute. Three things hold the speed
+//! down: the limit of the coordinate-setting code while the speed follows the diameter, and always the largest
+//! speed of the spindle and of the gear in use, where their parameters give one. A parameter gives the least speed of
+//! constant surface speed as well. The gear is that of the last M41 to M44, as most builders have it; gear 1 before.
+//!
+//! What the assumed machine cannot do is said once; the command keeps the value that the program asks for.
+//!
 //! Source: constant surface speed, its limit, and the rules of S in both modes.
 
 use turnwright_canon::{Action, SpindleSpeed, SpindleState};
+use turnwright_control::Machine;
 use turnwright_syntax::Word;
-use turnwright_units::{Rpm, SurfaceSpeed};
+use turnwright_units::{Feed, Rpm, SurfaceSpeed};
 
 use crate::machine::Core;
 use crate::modal::SpeedMode;
 use crate::report::Alarm;
+
+/// No spindle turns faster.
+const RPM_FENCE: u32 = 99_999;
+
+/// M codes that change to gears 1 to 4.
+const GEARS: std::ops::RangeInclusive<u32> = 41..=44;
+
+/// What the machine can do: only messages ask for it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MachineLimits {
+    feed_mm_per_min: f64,
+    rpm_max: u32,
+    rpm_min_surface: u32,
+}
+
+impl MachineLimits {
+    pub(crate) fn new(machine: &Machine) -> Self {
+        Self {
+            feed_mm_per_min: machine.cutting_max_mm_per_min,
+            rpm_max: machine.rpm_max,
+            rpm_min_surface: machine.rpm_min_surface,
+        }
+    }
+}
 
 impl Core {
     /// An S word in the speed mode in force.
@@ -30,16 +62,48 @@ impl Core {
         self.whole(word, self.settings.speed_max)
     }
 
+    /// Whether a P word names the main spindle.
+    pub(crate) fn selects_spindle(&self, word: &Word) -> bool {
+        let code = self.settings.spindle_selection_code;
+        code != 0 && self.whole(word, 99_999).is_ok_and(|value| value == code)
+    }
+
+    /// The gear that an M code changes to.
+    pub(crate) fn change_gear(&mut self, code: u32) {
+        if GEARS.contains(&code) && !self.is_capturing() {
+            self.modal.gear = (code - GEARS.start()) as u8 + 1;
+        }
+    }
+
+    /// The largest speed by parameter, in the gear in use.
+    fn rpm_by_parameter(&self) -> Option<Rpm> {
+        let of_gear = self.settings.gear_rpm_max[usize::from(self.modal.gear - 1)];
+        [self.settings.rpm_max, of_gear].into_iter().flatten().min()
+    }
+
+    /// The largest speed of the mode in force.
+    fn rpm_limit(&self) -> Option<Rpm> {
+        match self.modal.speed_mode {
+            SpeedMode::Constant => self.modal.rpm_max,
+            SpeedMode::Surface => [self.modal.rpm_max, self.rpm_by_parameter()].into_iter().flatten().min(),
+        }
+    }
+
     /// The spindle speed at the tool's present place under constant surface speed.
     pub(crate) fn present_rpm(&self) -> Rpm {
         match self.modal.speed_mode {
             SpeedMode::Constant => self.modal.rpm,
             SpeedMode::Surface => {
-                let diameter_mm = self.modal.position.x.to_mm().abs() * 2.0;
-                let free = self.modal.surface.to_m_per_min() * 1000.0
-                    / (std::f64::consts::PI * diameter_mm.max(1e-6));
-                let limit = self.modal.rpm_max.map_or(99_999.0, |rpm| f64::from(rpm.0));
-                Rpm(free.min(limit).round() as u32)
+                let surface_mm_per_min = self.modal.surface.0.to_mm();
+                if surface_mm_per_min == 0.0 {
+                    return Rpm(0);
+                }
+                let machine = &self.machine_limits;
+                let machine_max = if machine.rpm_max > 0 { machine.rpm_max } else { RPM_FENCE };
+                let limit = f64::from(self.rpm_limit().map_or(machine_max, |rpm| rpm.0.min(machine_max)));
+                let diameter_mm = self.modal.position.x.to_diameter().0.to_mm().abs();
+                let free = surface_mm_per_min / (std::f64::consts::PI * diameter_mm.max(1e-6));
+                Rpm(free.max(f64::from(machine.rpm_min_surface)).min(limit).round() as u32)
             }
         }
     }
@@ -47,10 +111,48 @@ impl Core {
     /// The state of the spindle as a command.
     pub(crate) fn spindle_action(&self) -> Action {
         let speed = match self.modal.speed_mode {
-            SpeedMode::Constant => SpindleSpeed::Constant(self.modal.rpm),
+            SpeedMode::Constant => {
+                let limit = self.rpm_by_parameter().unwrap_or(self.modal.rpm);
+                SpindleSpeed::Constant(self.modal.rpm.min(limit))
+            }
             SpeedMode::Surface => SpindleSpeed::Surface(self.modal.surface),
         };
-        Action::Spindle { state: self.modal.spindle, speed, rpm_max: self.modal.rpm_max }
+        Action::Spindle { state: self.modal.spindle, speed, rpm_max: self.rpm_limit() }
+    }
+
+    /// What a machinist would look at twice when the spindle gets new orders.
+    pub(crate) fn check_speed(&mut self) {
+        let turns = self.modal.spindle != SpindleState::Stop;
+        match self.modal.speed_mode {
+            SpeedMode::Constant => {
+                let limit = self.rpm_by_parameter().map_or(u32::MAX, |rpm| rpm.0);
+                let machine_max = self.machine_limits.rpm_max;
+                if self.modal.rpm.0 > limit || (machine_max > 0 && self.modal.rpm.0 > machine_max) {
+                    self.warn_once("speed-limited");
+                }
+                if turns && self.modal.rpm.0 == 0 {
+                    self.warn_once("spindle-without-speed");
+                }
+            }
+            SpeedMode::Surface if self.modal.surface.0.is_zero() => {
+                self.warn_once("surface-speed-without-value");
+            }
+            SpeedMode::Surface => {}
+        }
+        self.check_cutting_speed();
+    }
+
+    /// A feed above what the machine cuts with is said once.
+    pub(crate) fn check_cutting_speed(&mut self) {
+        let Some(feed) = self.feed_in_force() else { return };
+        let mm_per_min = match feed {
+            Feed::PerMinute(feed) => feed.0.to_mm(),
+            Feed::PerRevolution(_) if self.modal.spindle == SpindleState::Stop => return,
+            Feed::PerRevolution(feed) => feed.0.to_mm() * f64::from(self.present_rpm().0),
+        };
+        if mm_per_min > self.machine_limits.feed_mm_per_min && !self.is_capturing() {
+            self.warn_once("feed-limited");
+        }
     }
 
     /// Gives out the state of the spindle when it is a new one.

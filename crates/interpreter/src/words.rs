@@ -181,12 +181,12 @@ impl Core {
             number.digits = number.digits.abs();
         }
         let feed = self.feed(word, number, per_revolution)?;
+        self.modal.feed = Some(feed);
         if function.takes_lead {
             self.check_lead(word);
         } else {
             self.check_feed(word, feed, per_revolution);
         }
-        self.modal.feed = Some(feed);
         Ok(())
     }
 
@@ -253,6 +253,8 @@ impl Core {
             if per_revolution { feed > PER_REVOLUTION_MAX } else { feed < PER_MINUTE_MIN && !feed.is_zero() };
         if is_strange {
             self.warn("feed-suspicious", word);
+        } else {
+            self.check_cutting_speed();
         }
     }
 }

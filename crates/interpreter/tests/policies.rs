@@ -5,8 +5,8 @@ mod support;
 use support::{Conditions, Run, run_on};
 use turnwright_control::Control;
 use turnwright_control::policy::{
-    MissingPoint, NestedComment, OneShotWithMotion, Policies, RepeatedAddress, SpeedLimitAtReset,
-    StoppingCodes,
+    FeedPerRevolution, MissingPoint, NestedComment, OneShotWithMotion, Policies, RepeatedAddress,
+    SpeedLimitAtReset, StoppingCodes,
 };
 
 fn run_with(text: &str, restarts: u32, change: impl FnOnce(&mut Policies)) -> Run {
@@ -21,6 +21,14 @@ fn a_length_may_need_its_point() {
     assert_eq!(run_with("G00 X20. Z0\nM30\n", 0, change).diagnostics(), "");
     let run = run_with("G00 X20. Z5\nM30\n", 0, change);
     assert_eq!(run.diagnostics(), "alarm PS5073 point-required 1:10-12\n");
+}
+
+#[test]
+fn feed_per_revolution_may_be_an_option() {
+    let run = run_with("G98 G01 X20. F100.\nG99 X30. F0.2\nM30\n", 0, |policies| {
+        policies.feed_per_revolution = FeedPerRevolution::Alarm;
+    });
+    assert_eq!(run.diagnostics(), "alarm PS0014 feed-per-revolution-unavailable 2:1-4\n");
 }
 
 #[test]

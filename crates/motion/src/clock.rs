@@ -9,11 +9,11 @@
 use turnwright_canon::{Action, Command, Dwell, OtherAxes, RapidPath, Shape};
 use turnwright_units::{Feed, Lead, Position, WorkTip};
 
-use crate::MachineRates;
 use crate::axes::AxisPlaces;
 use crate::path::{ArcPath, point};
 use crate::spindle::{Order, Spindle};
 use crate::surface::Slowness;
+use crate::{MachineRates, RapidSurfaceSpeed};
 
 /// What the time of a command is spent on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -257,11 +257,17 @@ impl Clock {
             }
         };
         let way = self.known_minutes(minutes, length_mm);
-        // At rapid the spindle goes at once to the speed of the end point.
         let before = self.spindle.target_rpm();
         let after = self.spindle.order.rpm_at(to.x.to_mm());
-        self.spindle.aim(after);
-        self.spindle.run(way.seconds);
+        match (self.rates.rapid_surface_speed, self.spindle.order) {
+            (RapidSurfaceSpeed::AtPresentPoint, Order::Surface(law)) => {
+                self.spindle.chase(law, self.position.x.to_mm(), to.x.to_mm(), way.seconds);
+            }
+            _ => {
+                self.spindle.aim(after);
+                self.spindle.run(way.seconds);
+            }
+        }
         Timing {
             kind: Kind::Rapid,
             from: self.position,

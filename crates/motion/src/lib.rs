@@ -21,7 +21,7 @@ mod surface;
 
 pub use clock::{Clock, Kind, RpmRange, Timing, Totals};
 pub use path::ArcPath;
-pub use rates::MachineRates;
+pub use rates::{MachineRates, RapidSurfaceSpeed};
 pub use spindle::RPM_FENCE;
 pub use summary::{Extents, OPERATIONS_MAX, Operation, OperationKind, Summary};
 

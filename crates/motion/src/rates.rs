@@ -2,6 +2,16 @@
 
 use turnwright_units::Rpm;
 
+/// Which speed constant surface speed asks for during a rapid move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum RapidSurfaceSpeed {
+    /// At once that of the end point.
+    #[default]
+    AtEndPoint,
+    /// That of the present point, all the way.
+    AtPresentPoint,
+}
+
 /// The rates of a machine. X rates are those of the slide: millimetres of radius a minute.
 ///
 /// The default is an assumed small production lathe, the same as `data/machines/generic-lathe.toml`; a setup
@@ -32,6 +42,8 @@ pub struct MachineRates {
     pub rpm_max: Option<Rpm>,
     /// The spindle turns no slower while it follows the diameter, rpm.
     pub rpm_min_surface: u32,
+    /// What the spindle does in rapid moves while it follows the diameter.
+    pub rapid_surface_speed: RapidSurfaceSpeed,
 }
 
 impl Default for MachineRates {
@@ -49,6 +61,7 @@ impl Default for MachineRates {
             auxiliary_s: 0.2,
             rpm_max: Some(Rpm(4_000)),
             rpm_min_surface: 20,
+            rapid_surface_speed: RapidSurfaceSpeed::AtEndPoint,
         }
     }
 }

@@ -8,6 +8,12 @@ use crate::MachineRates;
 /// No spindle turns faster, rpm: the limit on the axis when neither program nor machine gives one.
 pub const RPM_FENCE: f64 = 100_000.0;
 
+/// A slower change of speed is no ramp that a machine has, and its times would add up to infinity.
+const RAMP_MIN: f64 = 1e-6;
+
+/// Pieces of a rapid move in which the spindle follows the diameter: the speed asked for is that of each end.
+const CHASE_STEPS: u32 = 64;
+
 /// The speeds that constant surface speed asks for: `surface` / radius between two limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SurfaceLaw {
@@ -71,7 +77,7 @@ impl Spindle {
             direction: 1.0,
             target_rpm: 0.0,
             actual_rpm: 0.0,
-            ramp_rpm_per_s: if ramp.is_finite() && ramp > 0.0 { ramp } else { 0.0 },
+            ramp_rpm_per_s: if ramp.is_finite() && ramp > RAMP_MIN { ramp } else { 0.0 },
         }
     }
 
@@ -130,6 +136,15 @@ impl Spindle {
         } else {
             let way = seconds * self.ramp_rpm_per_s;
             self.actual_rpm += if self.target_rpm > self.actual_rpm { way } else { -way };
+        }
+    }
+
+    /// Lets `seconds` go by in which the distance from the axis changes evenly and the speed asked for with it.
+    pub(crate) fn chase(&mut self, law: SurfaceLaw, start_x_mm: f64, end_x_mm: f64, seconds: f64) {
+        for step in 1..=CHASE_STEPS {
+            let part = f64::from(step) / f64::from(CHASE_STEPS);
+            self.aim(law.rpm_at(start_x_mm + (end_x_mm - start_x_mm) * part));
+            self.run(seconds / f64::from(CHASE_STEPS));
         }
     }
 

@@ -4,7 +4,7 @@ use turnwright_canon::{
     Action, Command, Coolant, Dwell, Interpolation, Origin, OtherAxes, RapidPath, Shape, SidePlane,
     SidePoint, SpindleSpeed, SpindleState, Turn,
 };
-use turnwright_motion::{Clock, Kind, MachineRates, Timing};
+use turnwright_motion::{Clock, Kind, MachineRates, RapidSurfaceSpeed, Timing};
 use turnwright_units::{
     Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position, Radius, Revolutions, Rpm, Seconds,
     SurfaceSpeed, WorkTip,
@@ -131,6 +131,25 @@ fn feeds_per_minute_and_per_revolution() {
     near(clock.totals().seconds(Kind::Cutting), 15.0 + 12.0 + 0.3 + 6.0);
     near(clock.totals().seconds(Kind::Spindle), 4.0);
     near(clock.totals().total_s(), 37.3);
+}
+
+#[test]
+fn in_a_rapid_the_spindle_aims_at_its_end_or_follows_the_tool() {
+    // 120 m/min from r20 to r1 at 600 mm/min: 19 mm at 10 mm/s = 1.9 s. 954.930 rpm at the start, 4000 at the end.
+    // Aiming at the end: 954.930 + 1900 = 2854.930 rpm, so the next cut waits 1.145 070 s.
+    // Following: 19 098.593/r² · 10 mm/s is faster than 1000 rpm/s from r = 13.82 mm on (1381.98 rpm), so the spindle
+    // lags for 12.82 mm or 1.282 s and has 2663.98 rpm at the end: 1.336 s to wait.
+    for (rapid_surface_speed, waited_s) in
+        [(RapidSurfaceSpeed::AtEndPoint, 1.145_070), (RapidSurfaceSpeed::AtPresentPoint, 1.336)]
+    {
+        let rates =
+            MachineRates { rapid_x_mm_per_min: 600.0, rapid_surface_speed, ..MachineRates::default() };
+        let mut clock = Clock::new(at(40.0, 0.0), rates);
+        spindle(&mut clock, surface(120), None);
+        near(rapid(&mut clock, 2.0, 0.0, RapidPath::EachAxis).seconds, 1.9);
+        let timing = line(&mut clock, 2.0, -1.0, per_rev(0.1));
+        assert!((timing.waited_s - waited_s).abs() < 0.02, "{} instead of {waited_s}", timing.waited_s);
+    }
 }
 
 #[test]

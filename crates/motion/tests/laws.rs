@@ -6,7 +6,9 @@ use turnwright_canon::{
     Action, Command, Dwell, Interpolation, Origin, OtherAxes, RapidPath, Shape, SidePlane, SidePoint,
     SpindleSpeed, SpindleState, Turn,
 };
-use turnwright_motion::{ArcPath, Clock, MachineRates, SPIRAL_TOLERANCE, Summary, TIME_TOLERANCE, Timing};
+use turnwright_motion::{
+    ArcPath, Clock, MachineRates, RapidSurfaceSpeed, SPIRAL_TOLERANCE, Summary, TIME_TOLERANCE, Timing,
+};
 use turnwright_units::{
     Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position, Radius, Revolutions, Rpm, Seconds,
     SurfaceSpeed, WorkTip,
@@ -333,6 +335,7 @@ fn nothing_makes_a_time_that_is_no_number() {
             auxiliary_s: rate(),
             rpm_max: None,
             rpm_min_surface: 0,
+            rapid_surface_speed: RapidSurfaceSpeed::AtPresentPoint,
         };
         let mut clock = Clock::new(at(10.0, 10.0), rates);
         let mut summary = Summary::new();

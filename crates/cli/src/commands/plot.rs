@@ -26,8 +26,10 @@ pub(crate) fn run(options: &Plot, printer: &Printer) -> Result<Status, Fault> {
     let text = ProgramText::open(&options.file, printer.speech)?;
     let session = Session::choose(&text, &options.machine, speech)?;
     let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
+    let machine = machine.limited_by(&session.control.parameters);
     let mut execution = Execution::new(&text, &session, &options.machine)?;
-    let mut measure = Measure::new(execution.interpreter().position(), &machine, true);
+    let mut measure =
+        Measure::new(execution.interpreter().position(), &machine, &session.control.parameters, true);
     while let Some(command) = execution.next_command() {
         measure.add(&command);
     }

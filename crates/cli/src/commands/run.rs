@@ -37,8 +37,14 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     let text = ProgramText::open(&options.file, printer.speech)?;
     let session = Session::choose(&text, &options.machine, speech)?;
     let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
+    let machine = machine.limited_by(&session.control.parameters);
     let mut execution = Execution::new(&text, &session, &options.machine)?;
-    let mut measure = Measure::new(execution.interpreter().position(), &machine, options.out.is_some());
+    let mut measure = Measure::new(
+        execution.interpreter().position(),
+        &machine,
+        &session.control.parameters,
+        options.out.is_some(),
+    );
     let mut folder =
         options.out.as_deref().map(|folder| OutFolder::create(folder, &session, speech)).transpose()?;
 

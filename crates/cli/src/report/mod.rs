@@ -5,9 +5,9 @@ mod json;
 mod page;
 
 use turnwright_canon::Command;
-use turnwright_control::{CodeSystem, Control, Language, Machine};
+use turnwright_control::{CodeSystem, Control, Language, Machine, Parameters};
 use turnwright_export::path::PathRecorder;
-use turnwright_motion::{Clock, Kind, MachineRates, Operation, OperationKind, Summary};
+use turnwright_motion::{Clock, Kind, MachineRates, Operation, OperationKind, RapidSurfaceSpeed, Summary};
 use turnwright_units::{Length, Position, Rpm, WorkTip, write_millimetres};
 
 use crate::finding::Finding;
@@ -27,8 +27,13 @@ pub(crate) struct Measure {
 
 impl Measure {
     /// Nothing yet, the tool at `start`.
-    pub(crate) fn new(start: Position<WorkTip>, machine: &Machine, keeps_path: bool) -> Self {
-        let rates = rates(machine);
+    pub(crate) fn new(
+        start: Position<WorkTip>,
+        machine: &Machine,
+        parameters: &Parameters,
+        keeps_path: bool,
+    ) -> Self {
+        let rates = rates(machine, parameters);
         let path =
             keeps_path.then(|| PathRecorder::new(start, rates.rapid_x_mm_per_min, rates.rapid_z_mm_per_min));
         Self { clock: Clock::new(start, rates), summary: Summary::new(), path }
@@ -45,7 +50,7 @@ impl Measure {
     }
 }
 
-fn rates(machine: &Machine) -> MachineRates {
+fn rates(machine: &Machine, parameters: &Parameters) -> MachineRates {
     let axes = &machine.axes;
     let usual = MachineRates::default();
     let rapid_y = axes.y.as_ref().map(|axis| axis.rapid_mm_per_min);
@@ -65,6 +70,11 @@ fn rates(machine: &Machine) -> MachineRates {
         auxiliary_s: machine.auxiliary_s,
         rpm_max: (machine.rpm_max > 0).then_some(Rpm(machine.rpm_max)),
         rpm_min_surface: machine.rpm_min_surface,
+        rapid_surface_speed: if parameters.bit("rapid-surface-speed-at-current-point") {
+            RapidSurfaceSpeed::AtPresentPoint
+        } else {
+            RapidSurfaceSpeed::AtEndPoint
+        },
     }
 }
 

@@ -6,6 +6,8 @@
 //!
 //! Source: modal groups, constant surface speed and feed modes of both families.
 
+use turnwright_control::policy::FeedPerRevolution;
+
 use super::Function;
 use crate::block::Call;
 use crate::machine::Core;
@@ -38,8 +40,10 @@ pub(super) static WORK_COORDINATES_6: Function =
 pub(super) static WORK_COORDINATES_ADDITIONAL: Function =
     Function::mode("work-coordinates-additional", additional_work).with_letters(b"P");
 
-pub(super) static CONSTANT_SURFACE_SPEED: Function =
-    Function::mode("constant-surface-speed", surface_speed).allowed_in_figure().allowed_in_rotation();
+pub(super) static CONSTANT_SURFACE_SPEED: Function = Function::mode("constant-surface-speed", surface_speed)
+    .with_letters(b"P")
+    .allowed_in_figure()
+    .allowed_in_rotation();
 pub(super) static CONSTANT_SPINDLE_SPEED: Function =
     Function::mode("constant-spindle-speed", spindle_speed).allowed_in_figure().allowed_in_rotation();
 
@@ -48,9 +52,7 @@ pub(super) static FEED_PER_MINUTE: Function =
         .allowed_in_figure()
         .allowed_in_rotation();
 pub(super) static FEED_PER_REVOLUTION: Function =
-    Function::mode("feed-per-revolution", |core, _| feed_mode(core, FeedMode::PerRevolution))
-        .allowed_in_figure()
-        .allowed_in_rotation();
+    Function::mode("feed-per-revolution", feed_per_revolution).allowed_in_figure().allowed_in_rotation();
 
 pub(super) static ABSOLUTE: Function = Function::mode("absolute", |core, _| increments(core, false));
 pub(super) static INCREMENTAL: Function = Function::mode("incremental", |core, _| increments(core, true));
@@ -102,6 +104,13 @@ fn additional_work(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     }
 }
 
+fn feed_per_revolution(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
+    match core.control.policies.feed_per_revolution {
+        FeedPerRevolution::Available => feed_mode(core, FeedMode::PerRevolution),
+        FeedPerRevolution::Alarm => Err(core.alarm_at("feed-per-revolution-unavailable", call.word)),
+    }
+}
+
 fn feed_mode(core: &mut Core, mode: FeedMode) -> Result<(), Alarm> {
     core.modal.feed_mode = mode;
     Ok(())
@@ -113,6 +122,17 @@ fn increments(core: &mut Core, are_incremental: bool) -> Result<(), Alarm> {
 }
 
 fn surface_speed(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
+    if !core.settings.surface_speed_available {
+        return Err(core.alarm_at("unusable-g-code", call.word));
+    }
+    let axis = match call.block.word(b'P') {
+        Some(word) if !core.selects_spindle(word) => core.whole(word, 99)?,
+        _ => 0,
+    };
+    let axis = if axis == 0 { core.settings.surface_speed_axis } else { axis };
+    if axis > 1 {
+        return Err(core.alarm_at("surface-speed-axis-illegal", call.block.word(b'P').or(call.word)));
+    }
     if core.is_capturing() {
         return Ok(());
     }
