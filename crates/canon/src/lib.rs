@@ -8,9 +8,11 @@
 //! person typed ([`CycleLabel`]).
 
 mod axes;
+mod curve;
 mod listing;
 
 pub use axes::{Interpolation, OtherAxes, SectionPlace, SidePlane, SidePoint, SpeedRatio};
+pub use curve::Curve;
 pub use listing::write_listing;
 use turnwright_units::{Angle, Feed, Lead, Position, Revolutions, Rpm, Seconds, SurfaceSpeed, WorkTip};
 
@@ -50,12 +52,17 @@ pub enum Action {
     Thread {
         /// End point.
         to: Position<WorkTip>,
+        /// Line or arc; an arc stays within the quarter of its circle in which one axis is the long one.
+        shape: Shape,
         /// Lead along the long axis at the start.
         lead: Lead,
-        /// Lead at the end, when it varies.
+        /// Lead at the end, when it varies: it changes evenly with the revolutions.
         lead_end: Option<Lead>,
-        /// Spindle angle at which the move starts.
+        /// Spindle angle at which the thread starts: of a chain, its first move.
         start_angle: Angle,
+        /// The thread goes on from the move before without a stop; otherwise the move waits until the spindle
+        /// has come to the start angle.
+        is_chained: bool,
     },
     /// The tool stands where it stood, and that place has other coordinates from here on: a coordinate preset,
     /// another work system, another tool offset. Nothing moves.
@@ -118,7 +125,7 @@ pub enum RapidPath {
 }
 
 /// The form of a cutting move. Start and end are exact; the radius is the distance of the centre from them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// A straight line.
     Line,
@@ -139,6 +146,26 @@ pub enum Shape {
         /// Centre of the circle.
         centre: SidePoint,
     },
+    /// A part of another conic; boxed, so that the moves of every day stay small.
+    Curve(Box<Curve>),
+}
+
+impl Shape {
+    /// The word of the trace format.
+    pub const fn word(&self) -> &'static str {
+        let (clockwise, counter_clockwise, turn) = match self {
+            Self::Line => return "line",
+            Self::Arc { turn, .. } | Self::SideArc { turn, .. } => ("cw", "ccw", *turn),
+            Self::Curve(curve) => match **curve {
+                Curve::Ellipse { turn, .. } => ("ellipse-cw", "ellipse-ccw", turn),
+                Curve::Parabola { turn, .. } => ("parabola-cw", "parabola-ccw", turn),
+            },
+        };
+        match turn {
+            Turn::Clockwise => clockwise,
+            Turn::CounterClockwise => counter_clockwise,
+        }
+    }
 }
 
 /// The way an arc turns, seen with Z to the right and X up.

@@ -3,14 +3,17 @@
 //! One command a line, lengths in millimetres, X as `d` (diameter):
 //! `feed d40 z-15 f0.3/rev` · `cw d36 z-45 c(d36 z-42) f0.3/rev` · `rapid d46 z0.5`.
 //!
+//! Ellipses have centre, half axes and tilt (`ellipse-cw d40 z-20 c(d0 z-20) a20 b20 tilt0 …`), parabolas vertex, focal
+//! parameter and tilt; a thread that goes on from the move before is `chained`.
+//!
 //! Other axes follow the position: `c90` and `b30` in degrees, `y5` in millimetres, `v` the place on the virtual
 //! axis; the centre of an arc across the section names its two axes, `c(d40 y0)`.
 
 use turnwright_units::{Feed, Position, WorkTip, write_degrees, write_fixed, write_millimetres};
 
 use crate::{
-    Action, Command, Coolant, Dwell, Interpolation, OtherAxes, PathMode, Shape, SidePlane, SpindleSpeed,
-    SpindleState, Turn,
+    Action, Command, Coolant, Curve, Dwell, Interpolation, OtherAxes, PathMode, Shape, SidePlane,
+    SpindleSpeed, SpindleState,
 };
 
 /// Writes one command, without a line end, its lengths rounded to `decimals` places.
@@ -23,43 +26,13 @@ pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
         }
         Action::Feed { to, shape, feed, others } => {
             match shape {
-                Shape::Line => {
-                    out.extend_from_slice(b"feed");
-                    write_position(out, *to, decimals);
-                    write_others(out, others.as_deref(), decimals);
-                }
-                Shape::Arc { turn, centre } => {
-                    write_turn(out, *turn);
-                    write_position(out, *to, decimals);
-                    write_others(out, others.as_deref(), decimals);
-                    out.extend_from_slice(b" c(");
-                    let before = out.len();
-                    write_position(out, *centre, decimals);
-                    out.remove(before);
-                    out.push(b')');
-                }
-                Shape::SideArc { plane, turn, centre } => {
-                    write_turn(out, *turn);
-                    write_position(out, *to, decimals);
-                    write_others(out, others.as_deref(), decimals);
-                    let side =
-                        if others.as_deref().is_some_and(|others| others.v.is_some()) { b'v' } else { b'y' };
-                    out.extend_from_slice(b" c(");
-                    match plane {
-                        SidePlane::Face => {
-                            out.push(b'd');
-                            write_millimetres(out, centre.along + centre.along, decimals);
-                        }
-                        SidePlane::Flank | SidePlane::Wall => {
-                            out.push(b'z');
-                            write_millimetres(out, centre.along, decimals);
-                        }
-                    }
-                    out.extend_from_slice(&[b' ', side]);
-                    write_millimetres(out, centre.side, decimals);
-                    out.push(b')');
-                }
+                Shape::Line => out.extend_from_slice(b"feed"),
+                shape => out.extend_from_slice(shape.word().as_bytes()),
             }
+            write_position(out, *to, decimals);
+            write_others(out, others.as_deref(), decimals);
+            let side = if others.as_deref().is_some_and(|others| others.v.is_some()) { b'v' } else { b'y' };
+            write_shape(out, shape, side, decimals);
             out.extend_from_slice(b" f");
             write_millimetres(out, feed.length(), 6);
             out.extend_from_slice(match feed {
@@ -67,16 +40,23 @@ pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
                 Feed::PerRevolution(_) => b"/rev",
             });
         }
-        Action::Thread { to, lead, lead_end, start_angle } => {
+        Action::Thread { to, shape, lead, lead_end, start_angle, is_chained } => {
             out.extend_from_slice(b"thread");
+            if *shape != Shape::Line {
+                out.push(b' ');
+                out.extend_from_slice(shape.word().as_bytes());
+            }
             write_position(out, *to, decimals);
+            write_shape(out, shape, b'y', decimals);
             out.extend_from_slice(b" lead");
             write_millimetres(out, lead.0, 6);
             if let Some(end) = lead_end {
                 out.extend_from_slice(b"..");
                 write_millimetres(out, end.0, 6);
             }
-            if start_angle.millidegrees() != 0 {
+            if *is_chained {
+                out.extend_from_slice(b" chained");
+            } else if start_angle.millidegrees() != 0 {
                 out.extend_from_slice(b" q");
                 write_fixed(out, start_angle.millidegrees(), 3);
             }
@@ -152,11 +132,46 @@ pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
     }
 }
 
-fn write_turn(out: &mut Vec<u8>, turn: Turn) {
-    out.extend_from_slice(match turn {
-        Turn::Clockwise => b"cw",
-        Turn::CounterClockwise => b"ccw",
-    });
+/// The data of a shape that is no line; `side` names the axis across the section.
+fn write_shape(out: &mut Vec<u8>, shape: &Shape, side: u8, decimals: u8) {
+    let place = |out: &mut Vec<u8>, name: &[u8], place| {
+        out.extend_from_slice(name);
+        let before = out.len();
+        write_position(out, place, decimals);
+        out.remove(before);
+        out.push(b')');
+    };
+    let length = |out: &mut Vec<u8>, name: &[u8], length| {
+        out.extend_from_slice(name);
+        write_millimetres(out, length, decimals);
+    };
+    let tilt = match shape {
+        Shape::Line => return,
+        Shape::Arc { centre, .. } => return place(out, b" c(", *centre),
+        Shape::SideArc { plane, centre, .. } => {
+            match plane {
+                SidePlane::Face => length(out, b" c(d", centre.along + centre.along),
+                SidePlane::Flank | SidePlane::Wall => length(out, b" c(z", centre.along),
+            }
+            length(out, &[b' ', side], centre.side);
+            return out.push(b')');
+        }
+        Shape::Curve(curve) => match &**curve {
+            Curve::Ellipse { centre, half_along, half_across, tilt, .. } => {
+                place(out, b" c(", *centre);
+                length(out, b" a", *half_along);
+                length(out, b" b", *half_across);
+                tilt
+            }
+            Curve::Parabola { vertex, focal_parameter, tilt, .. } => {
+                place(out, b" v(", *vertex);
+                length(out, b" p", *focal_parameter);
+                tilt
+            }
+        },
+    };
+    out.extend_from_slice(b" tilt");
+    write_fixed(out, tilt.millidegrees(), 3);
 }
 
 fn write_others(out: &mut Vec<u8>, others: Option<&OtherAxes>, decimals: u8) {

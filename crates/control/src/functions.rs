@@ -54,6 +54,7 @@ pub struct FunctionEntry {
     /// What it does cannot be told from a program: it is refused for good.
     #[serde(default)]
     pub outside_scope: bool,
+    only_with: Option<String>,
     /// Formats, with the letters of system A.
     #[serde(default)]
     pub forms: Vec<String>,
@@ -80,6 +81,11 @@ impl FunctionEntry {
     pub fn is_on(&self, control: &str) -> bool {
         self.only.as_ref().is_none_or(|only| only.iter().any(|name| name == control))
             && !self.not_on.iter().any(|name| name == control)
+    }
+
+    /// The parameter that must be set for its code to name it; another function has the code otherwise.
+    pub fn only_with(&self) -> Option<&str> {
+        self.only_with.as_deref()
     }
 
     /// Its name in a language.
@@ -138,12 +144,13 @@ impl Functions {
 
     /// The function that a code (times ten) names on a control, by the name of its code table.
     pub fn by_code(&self, code: u16, system: CodeSystem, control: &str) -> Option<(&str, &FunctionEntry)> {
-        self.iter().find(|(_, entry)| {
+        let named = self.iter().filter(|(_, entry)| {
             entry.is_on(control)
                 && entry
                     .code(system)
                     .is_some_and(|text| text.split('/').any(|one| parse_code(one) == Some(code)))
-        })
+        });
+        named.min_by_key(|(_, entry)| entry.only_with.is_some())
     }
 }
 

@@ -523,10 +523,67 @@ policies! {
         /// With the number of a first block, the program in work calls itself.
         CallsItself,
     }
+    /// The word beside F that gives the lead of a thread.
+    lead_words: LeadWords {
+        /// E: a lead with more digits.
+        FeedOrExact,
+        /// I: threads per inch.
+        FeedOrCount,
+    }
+    /// Units of the start angle of a thread.
+    start_angle_unit: StartAngleUnit {
+        /// Thousandths of a degree; a point is refused.
+        Thousandths,
+        /// Degrees.
+        Degrees,
+        /// Thousandths or degrees, as the unit parameter says.
+        ByUnitParameter,
+    }
+    /// The start angle of a thread with changing lead.
+    variable_lead_start_angle: VariableLeadStartAngle {
+        /// It is taken as in a thread of constant lead.
+        Taken,
+        /// There is none.
+        Refused,
+    }
+    /// Words for the run-out of a thread: J across, K along.
+    run_out_words: RunOutWords {
+        /// There are none; the parameters say how cycles run out, single threads do not.
+        Absent,
+        /// Without K the run-out is as long as it is deep.
+        LengthAsDepth,
+        /// Without K the tool leaves straight out of the end of the thread.
+        StraightOut,
+    }
+    /// What the depth of a run-out of a tapered single thread is counted from.
+    run_out_base: RunOutBase {
+        /// From the place where the run-out begins: J is the way of the short axis in the run-out.
+        Leaving,
+        /// From the programmed end point.
+        End,
+    }
+    /// The words L and P of the single thread cycle.
+    thread_cycle_words: ThreadCycleWords {
+        /// There are none.
+        Plain,
+        /// L starts; P0 cuts along Z, P1 across the face.
+        StartsAndFace,
+        /// L starts; P0 cuts, P1 repairs a thread that was taken out of the chuck.
+        StartsAndRepair,
+    }
+    /// A thread faster than an axis may feed.
+    thread_overspeed: ThreadOverspeed {
+        /// Refused before the first pass.
+        Alarm,
+        /// The axis is held at its limit and loses the lead; a warning says so.
+        Warn,
+    }
     /// A thread while no spindle speed is commanded.
     thread_without_spindle: ThreadWithoutSpindle {
         /// Refused before the first pass.
         Alarm,
+        /// Refused unless the parameter switches the check off.
+        ByCheckParameter,
         /// The axis waits for the spindle; a warning says so.
         Warn,
     }
@@ -554,6 +611,14 @@ pub struct Limits {
     pub sequence_digits: u8,
     /// Digits of a program number.
     pub program_digits: u8,
+    /// Smallest lead of a thread while the units are metric, nanometres.
+    pub lead_metric_min_nm: i64,
+    /// Largest lead of a thread while the units are metric, nanometres.
+    pub lead_metric_max_nm: i64,
+    /// Smallest lead of a thread while the units are inch, nanometres.
+    pub lead_inch_min_nm: i64,
+    /// Largest lead of a thread while the units are inch, nanometres.
+    pub lead_inch_max_nm: i64,
     /// Inputs that can end a dwell; 0 when the control lacks the function.
     pub dwell_inputs: u8,
     /// Highest offset number.

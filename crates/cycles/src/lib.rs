@@ -52,8 +52,8 @@ pub use misuse::Misuse;
 pub use pattern::{Pattern, PatternRequest, SinglePass, pattern};
 pub use roughing::{Coincident, EscapeSpeed, LevelOrigin, Monotony, RoughRequest, Roughing, rough};
 pub use single::{
-    BoxCycle, BoxRequest, FirstAxis, ThreadOnce, ThreadOnceRequest, box_cycle, taper_crosses_start,
-    thread_once,
+    BoxCycle, BoxRequest, FirstAxis, ThreadOnce, ThreadOnceRequest, angle_of_start, box_cycle,
+    taper_crosses_start, thread_once,
 };
 pub use threading::{Clamp, DepthSchedule, ThreadRequest, Threading, depth_schedule, thread};
 

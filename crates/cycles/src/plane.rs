@@ -55,6 +55,12 @@ impl Plane {
         }
     }
 
+    /// The place at computed u and v, rounded once.
+    pub(crate) fn place_both_computed(&self, u: f64, v: f64) -> Position<WorkTip> {
+        let (x, z) = if self.depth_is_x { (u, v) } else { (v, u) };
+        Position::new(snap_x(x, self.increment), snap_z(z, self.increment))
+    }
+
     /// The smallest step along u, nanometres: for X half of the increment, which counts on the diameter.
     pub(crate) const fn grid_u(&self) -> i64 {
         if self.depth_is_x { self.increment.nm() / 2 } else { self.increment.nm() }

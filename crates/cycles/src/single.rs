@@ -3,15 +3,15 @@
 //! In: a [`BoxRequest`] or a [`ThreadOnceRequest`]. Out: infeed, cut, out, home. The box leaves the cut at the feed,
 //! the thread at rapid traverse.
 //!
-//! Not here: which words persist from block to block, repetition for several starts. Source: the single cycles in
+//! Not here: which words persist from block to block. Source: the single cycles in
 //! chapter 13 of the language reference.
 
 use turnwright_canon::{Action, Phase};
-use turnwright_units::{Angle, Lead, Length, Position, Radius, WorkTip};
+use turnwright_units::{Angle, FeedPerMinute, Lead, Length, Position, WorkTip};
 
 use crate::plane::{Plane, in_range};
 use crate::threading::{LineWords, Part, ThreadLine};
-use crate::{Context, CycleMove, Misuse, Tool};
+use crate::{Context, CutAlong, CycleMove, Misuse, Tool};
 
 /// The axis that a box cycle moves first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -99,26 +99,38 @@ impl Iterator for BoxCycle {
 pub struct ThreadOnceRequest {
     /// State the cycle starts in; its feed is not used.
     pub context: Context,
+    /// The axis that the thread runs along; the infeed is along the other one.
+    pub along: CutAlong,
     /// Where the thread ends.
     pub end: Position<WorkTip>,
-    /// Radius at the start of the thread less radius at its end, signed.
-    pub taper: Radius,
+    /// Begin of the thread less its end along the axis of the infeed, signed; radius for X.
+    pub taper: Length,
     /// Advance per revolution, along the longer axis of the thread.
     pub lead: Lead,
-    /// Spindle angle at which the pass starts.
+    /// Spindle angle at which the first pass starts.
     pub start_angle: Angle,
-    /// Length of the run-out along Z; zero: none.
+    /// Starts of the thread, spread evenly over a revolution: one pass each. Zero is one.
+    pub starts: u32,
+    /// Length of the run-out along the thread; zero: none.
     pub run_out: Length,
-    /// Angle of the run-out from Z, degrees below 90; zero: 45.
+    /// Angle of the run-out from the thread's axis, degrees below 90; zero: 45.
     pub run_out_angle_deg: u8,
+    /// How far the run-out leaves along the axis of the infeed, instead of by the angle.
+    pub run_out_depth: Option<Length>,
+    /// Feed of the way out; rapid traverse when not given.
+    pub pull_out_feed: Option<FeedPerMinute>,
 }
 
-/// The moves of a single thread pass.
+/// The moves of a single thread pass, or of one for each start.
 #[derive(Clone, Debug)]
 pub struct ThreadOnce {
     line: ThreadLine,
     part: Part,
     tool: Tool,
+    first_angle: Angle,
+    /// Number of the start in work, from 0, and how many there are.
+    start: u32,
+    starts: u32,
 }
 
 /// Plans a single thread pass.
@@ -127,28 +139,61 @@ pub struct ThreadOnce {
 /// [`Misuse::NoThread`], [`Misuse::LeadNotPositive`], [`Misuse::RunOutNegative`], [`Misuse::RunOutAngle`],
 /// [`Misuse::OutOfRange`].
 pub fn thread_once(request: ThreadOnceRequest) -> Result<ThreadOnce, Misuse> {
-    let ThreadOnceRequest { context, end, taper, lead, start_angle, run_out, run_out_angle_deg } = request;
-    let mut line =
-        ThreadLine::new(LineWords { context, end, taper, run_out, run_out_angle_deg, lead, start_angle })?;
+    let ThreadOnceRequest { context, end, taper, lead, start_angle, run_out, run_out_angle_deg, .. } =
+        request;
+    let mut line = ThreadLine::new(LineWords {
+        context,
+        along: request.along,
+        end,
+        taper,
+        run_out,
+        run_out_angle_deg,
+        run_out_depth: request.run_out_depth,
+        pull_out_feed: request.pull_out_feed,
+        lead,
+        start_angle,
+    })?;
     line.fit_run_out(0.0, 0.0);
-    Ok(ThreadOnce { line, part: Part::Infeed, tool: Tool::new(context.start) })
+    let (tool, starts) = (Tool::new(context.start), request.starts.max(1));
+    Ok(ThreadOnce { line, part: Part::Infeed, tool, first_angle: start_angle, start: 0, starts })
+}
+
+/// Where a start of several begins, in whole thousandths of a degree; below a full turn except for the first.
+pub fn angle_of_start(first: Angle, start: u32, starts: u32) -> Angle {
+    const TURN: i64 = 360_000;
+    if start == 0 {
+        return first;
+    }
+    let shift = (i64::from(start) * TURN * 2 + i64::from(starts)) / (i64::from(starts) * 2);
+    Angle::from_millidegrees((first.millidegrees() + shift) % TURN)
 }
 
 impl ThreadOnce {
     /// No more moves than this.
     pub const fn move_estimate(&self) -> u64 {
-        5
+        5 * self.starts as u64
     }
 
-    /// The run-out that is made, along Z, when the one asked for does not fit between thread and start point.
+    /// Passes it makes.
+    pub const fn passes(&self) -> u32 {
+        self.starts
+    }
+
+    /// The run-out that is made, along the thread, when the one asked for does not fit between thread and start
+    /// point.
     pub fn run_out_shortened(&self) -> Option<Length> {
         self.line.shortened()
     }
 
     fn advance(&mut self) -> Option<CycleMove> {
         let (action, phase) = self.line.step(self.part, 0.0, 0.0)?;
+        let step = CycleMove { action, phase, pass: self.start + 1, element: None };
         self.part = self.part.after();
-        Some(CycleMove { action, phase, pass: 1, element: None })
+        if self.part == Part::Done && self.start + 1 < self.starts {
+            (self.part, self.start) = (Part::Infeed, self.start + 1);
+            self.line.start_angle = angle_of_start(self.first_angle, self.start, self.starts);
+        }
+        Some(step)
     }
 }
 
@@ -242,11 +287,15 @@ mod tests {
         let request = ThreadOnceRequest {
             context: context(),
             end: at(26, -20),
-            taper: Radius::ZERO,
+            taper: Length::ZERO,
+            along: CutAlong::Z,
             lead: Lead(Length::from_mm(2)),
             start_angle: Angle::ZERO,
+            starts: 1,
             run_out: Length::from_mm(2),
             run_out_angle_deg: 45,
+            run_out_depth: None,
+            pull_out_feed: None,
         };
         let cycle = thread_once(request).expect("a thread");
         assert_eq!(cycle.run_out_shortened(), None);
@@ -255,8 +304,25 @@ mod tests {
         let long =
             thread_once(ThreadOnceRequest { run_out: Length::from_mm(9), ..request }).expect("a thread");
         assert_eq!(long.run_out_shortened(), Some(Length::from_mm(3)));
+        let steep = ThreadOnceRequest { run_out_depth: Some(Length::from_mm(1)), ..request };
+        let steep = corners(thread_once(steep).expect("a thread"));
+        assert_eq!(steep[1..3], [at(26, -18), at(28, -20)]);
+        let face = ThreadOnceRequest { along: CutAlong::X, end: at(12, -3), ..request };
+        let face = corners(thread_once(face).expect("a thread"));
+        assert_eq!(face, [at(32, -3), at(16, -3), at(12, -1), at(12, 1), at(32, 1)]);
         let flat = thread_once(ThreadOnceRequest { end: at(26, 1), ..request });
         assert_eq!(flat.map(|_| ()), Err(Misuse::NoThread));
+    }
+
+    #[test]
+    fn several_starts_are_spread_over_the_turn() {
+        let starts = |starts, first| -> Vec<i64> {
+            let first = Angle::from_millidegrees(first);
+            (0..starts).map(|start| angle_of_start(first, start, starts).millidegrees()).collect()
+        };
+        assert_eq!(starts(1, 360_000), [360_000]);
+        assert_eq!(starts(3, 0), [0, 120_000, 240_000]);
+        assert_eq!(starts(7, 300_000), [300_000, 351_429, 42_857, 94_286, 145_714, 197_143, 248_571]);
     }
 
     #[test]

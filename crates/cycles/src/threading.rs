@@ -7,11 +7,11 @@
 //! Not here: the digits of the packed word, several starts (the caller runs the cycle once a start or turns the start
 //! angle), spindle and feed hold. Source: thread cutting, chapter 9 of the cycles.
 
-use turnwright_canon::{Action, Phase};
-use turnwright_units::{Angle, Lead, Length, Position, Radius, WorkTip};
+use turnwright_canon::{Action, Phase, Shape};
+use turnwright_units::{Angle, Feed, FeedPerMinute, Lead, Length, Position, Radius, WorkTip};
 
-use crate::plane::{in_range, snap_x, snap_z};
-use crate::{Context, CycleMove, Misuse, Tool, pass_number};
+use crate::plane::{Plane, in_range};
+use crate::{Context, CutAlong, CycleMove, Misuse, Tool, pass_number};
 
 /// What happens to the depths once a pass would take less than the least depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -188,10 +188,13 @@ pub fn thread(request: ThreadRequest) -> Result<Threading, Misuse> {
     let flank = half_angle_tangent(request.nose_angle_deg);
     let mut line = ThreadLine::new(LineWords {
         context: request.context,
+        along: CutAlong::Z,
         end: request.end,
-        taper: request.taper,
+        taper: request.taper.0,
         run_out: request.run_out,
         run_out_angle_deg: request.run_out_angle_deg,
+        run_out_depth: None,
+        pull_out_feed: None,
         lead: request.lead,
         start_angle: request.start_angle,
     })?;
@@ -274,41 +277,51 @@ impl Part {
 /// The words that every thread has.
 pub(crate) struct LineWords {
     pub(crate) context: Context,
+    pub(crate) along: CutAlong,
     pub(crate) end: Position<WorkTip>,
-    pub(crate) taper: Radius,
+    pub(crate) taper: Length,
     pub(crate) run_out: Length,
     pub(crate) run_out_angle_deg: u8,
+    pub(crate) run_out_depth: Option<Length>,
+    pub(crate) pull_out_feed: Option<FeedPerMinute>,
     pub(crate) lead: Lead,
     pub(crate) start_angle: Angle,
 }
 
-/// The line that a finished thread follows, and how a pass leaves it. Nanometres, radius.
+/// The line that a finished thread follows, and how a pass leaves it. Nanometres, radius; u is the axis of the
+/// infeed, v that of the thread.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ThreadLine {
     context: Context,
-    end_x: f64,
-    end_z: f64,
-    /// From start to end along Z, signed.
+    plane: Plane,
+    start_u: f64,
+    end_u: f64,
+    end_v: f64,
+    /// From start to end along v, signed.
     pub(crate) length: f64,
     taper: f64,
     /// 1 away from the axis, −1 towards it, 0 when the start gives no side.
     pub(crate) outward: f64,
     asked_run_out: f64,
     run_out: f64,
-    /// Way along X per way along Z in the run-out.
+    /// Way along u per way along v in the run-out.
     slope: f64,
+    pull_out_feed: Option<FeedPerMinute>,
     lead: Lead,
-    start_angle: Angle,
+    pub(crate) start_angle: Angle,
 }
 
 impl ThreadLine {
     pub(crate) fn new(words: LineWords) -> Result<Self, Misuse> {
-        let LineWords { context, end, taper, run_out, run_out_angle_deg, lead, start_angle } = words;
-        in_range(&[context.start.x.0, context.start.z, end.x.0, end.z, taper.0, run_out, lead.0])?;
+        let LineWords { context, end, taper, run_out, run_out_angle_deg, lead, start_angle, .. } = words;
+        let depth = words.run_out_depth.unwrap_or(Length::ZERO);
+        in_range(&[context.start.x.0, context.start.z, end.x.0, end.z, taper, run_out, depth, lead.0])?;
+        let plane = Plane::new(words.along == CutAlong::Z, context.increment);
+        let ((start_u, start_v), (end_u, end_v)) = (plane.split(context.start), plane.split(end));
         let refusals = [
-            (context.start.z == end.z, Misuse::NoThread),
+            (start_v == end_v, Misuse::NoThread),
             (lead.0.nm() <= 0, Misuse::LeadNotPositive),
-            (run_out.nm() < 0, Misuse::RunOutNegative),
+            (run_out.nm() < 0 || depth.nm() < 0, Misuse::RunOutNegative),
             (run_out_angle_deg >= 90, Misuse::RunOutAngle),
         ];
         if let Some((_, misuse)) = refusals.into_iter().find(|&(refused, _)| refused) {
@@ -316,14 +329,20 @@ impl ThreadLine {
         }
         Ok(Self {
             context,
-            end_x: nm(end.x.0),
-            end_z: nm(end.z),
-            length: nm(end.z - context.start.z),
-            taper: nm(taper.0),
-            outward: (context.start.x - end.x).0.signum() as f64,
+            plane,
+            start_u: start_u as f64,
+            end_u: end_u as f64,
+            end_v: end_v as f64,
+            length: (end_v - start_v) as f64,
+            taper: nm(taper),
+            outward: (start_u - end_u).signum() as f64,
             asked_run_out: nm(run_out),
             run_out: nm(run_out),
-            slope: tangent(run_out_angle_deg),
+            slope: match words.run_out_depth {
+                Some(depth) if run_out.nm() > 0 => nm(depth) / nm(run_out),
+                _ => tangent(run_out_angle_deg),
+            },
+            pull_out_feed: words.pull_out_feed,
             lead,
             start_angle,
         })
@@ -332,7 +351,7 @@ impl ThreadLine {
     /// Shortens the run-out so that no pass leaves the room between thread and start point. `stock` is what the
     /// shallowest pass leaves on the root, `advance` how far the start of the deepest has moved along Z.
     pub(crate) fn fit_run_out(&mut self, stock: f64, advance: f64) {
-        let room = self.outward * (nm(self.context.start.x.0) - self.end_x) - stock;
+        let room = self.outward * (self.start_u - self.end_u) - stock;
         // Along the run-out the thread's own taper brings the tool nearer to the start point, or further off.
         let rise = self.slope + self.outward * self.taper / self.length.abs();
         let by_room = if rise > 0.0 { room.max(0.0) / rise } else { f64::INFINITY };
@@ -349,51 +368,69 @@ impl ThreadLine {
     pub(crate) fn step(&self, part: Part, stock: f64, advance: f64) -> Option<(Action, Phase)> {
         let context = &self.context;
         let forward = self.length.signum();
-        let leave = self.end_z - forward * self.run_out;
+        let leave = self.end_v - forward * self.run_out;
         Some(match part {
             Part::Infeed => {
-                let begin = self.end_z - self.length + forward * advance;
+                let begin = self.end_v - self.length + forward * advance;
                 (context.rapid(self.on_line(begin, stock)), Phase::Infeed)
             }
-            Part::Thread => (self.threaded(self.on_line(leave, stock), self.lead), Phase::Thread),
+            Part::Thread => (self.threaded(self.on_line(leave, stock), self.lead, false), Phase::Thread),
             Part::Chamfer => {
-                let x = self.radius(leave, stock) + self.outward * self.run_out * self.slope;
-                (self.threaded(self.place(x, self.end_z), self.run_out_lead()), Phase::Chamfer)
+                let u = self.depth_axis(leave, stock) + self.outward * self.run_out * self.slope;
+                let follows = leave != self.end_v - self.length + forward * advance;
+                (
+                    self.threaded(
+                        self.plane.place_both_computed(u, self.end_v),
+                        self.run_out_lead(),
+                        follows,
+                    ),
+                    Phase::Chamfer,
+                )
             }
             Part::Out => {
-                let z = snap_z(self.end_z, context.increment);
-                (context.rapid(Position::new(context.start.x, z)), Phase::Out)
+                // The start as it is given, only the other axis rounded.
+                let end = self.plane.place_both_computed(self.end_u, self.end_v);
+                let start = context.start;
+                let to = if self.plane.depth_is_x {
+                    Position::new(start.x, end.z)
+                } else {
+                    Position::new(end.x, start.z)
+                };
+                let out = match self.pull_out_feed {
+                    Some(feed) => {
+                        Action::Feed { to, shape: Shape::Line, feed: Feed::PerMinute(feed), others: None }
+                    }
+                    None => context.rapid(to),
+                };
+                (out, Phase::Out)
             }
             Part::Home => (context.rapid(context.start), Phase::Home),
             Part::Done => return None,
         })
     }
 
-    const fn threaded(&self, to: Position<WorkTip>, lead: Lead) -> Action {
-        Action::Thread { to, lead, lead_end: None, start_angle: self.start_angle }
+    const fn threaded(&self, to: Position<WorkTip>, lead: Lead, is_chained: bool) -> Action {
+        let start_angle = self.start_angle;
+        Action::Thread { to, shape: Shape::Line, lead, lead_end: None, start_angle, is_chained }
     }
 
-    fn radius(&self, z: f64, stock: f64) -> f64 {
-        self.end_x + self.outward * stock + self.taper * ((self.end_z - z) / self.length)
+    /// u of the line at v.
+    fn depth_axis(&self, v: f64, stock: f64) -> f64 {
+        self.end_u + self.outward * stock + self.taper * ((self.end_v - v) / self.length)
     }
 
-    fn on_line(&self, z: f64, stock: f64) -> Position<WorkTip> {
-        self.place(self.radius(z, stock), z)
+    fn on_line(&self, v: f64, stock: f64) -> Position<WorkTip> {
+        self.plane.place_both_computed(self.depth_axis(v, stock), v)
     }
 
-    fn place(&self, x: f64, z: f64) -> Position<WorkTip> {
-        let increment = self.context.increment;
-        Position::new(snap_x(x, increment), snap_z(z, increment))
-    }
-
-    /// Lead along the longer axis of the run-out, so that Z keeps the pace it has in the thread.
+    /// Lead along the longer axis of the run-out, so that v keeps the pace it has in the thread.
     fn run_out_lead(&self) -> Lead {
         let steep = (self.taper / self.length).abs();
         if steep <= 1.0 && self.slope <= 1.0 {
             return self.lead;
         }
-        let along_z = nm(self.lead.0) / steep.max(1.0);
-        let lead = (along_z * self.slope.max(1.0)).round().clamp(1.0, 1e16);
+        let along_v = nm(self.lead.0) / steep.max(1.0);
+        let lead = (along_v * self.slope.max(1.0)).round().clamp(1.0, 1e16);
         Lead(Length::from_nm(lead as i64))
     }
 }

@@ -754,7 +754,19 @@ fn no_thread_or_box_panics_or_runs_away() {
 
         let ThreadRequest { run_out, run_out_angle_deg, lead, start_angle, .. } = request;
         let taper = Radius(taper);
-        let once = ThreadOnceRequest { context, end, taper, lead, start_angle, run_out, run_out_angle_deg };
+        let once = ThreadOnceRequest {
+            context,
+            along: CutAlong::Z,
+            end,
+            taper: taper.0,
+            lead,
+            start_angle,
+            starts: 1,
+            run_out,
+            run_out_angle_deg,
+            run_out_depth: None,
+            pull_out_feed: None,
+        };
         accepted.1 += i32::from(run(thread_once(once), 5, context.start));
         let first = dice.pick(&[FirstAxis::X, FirstAxis::Z]);
         let _ = taper_crosses_start(first, context.start, end, taper.0);

@@ -96,7 +96,17 @@ impl Demo {
     fn thread(&mut self, diameter_mm: f64, z_mm: f64) {
         let lead = Lead(Length::from_nm(1_500_000));
         let to = at(diameter_mm, z_mm);
-        self.add(Action::Thread { to, lead, lead_end: None, start_angle: Angle::ZERO }, 1.8);
+        self.add(
+            Action::Thread {
+                to,
+                lead,
+                lead_end: None,
+                start_angle: Angle::ZERO,
+                shape: Shape::Line,
+                is_chained: false,
+            },
+            1.8,
+        );
     }
 }
 

@@ -7,11 +7,15 @@
 //! times still see it. Coordinates are millimetres, X as a radius, in `f32`: half a micrometre at eight
 //! metres, far below a pixel. Deliberately not here: pixels, colours, and any number that a check would use.
 
-use turnwright_canon::{Action, Command, CycleOrigin, Dwell, RapidPath, SectionPlace, Shape, Turn};
+use turnwright_canon::{Action, Command, Curve, CycleOrigin, Dwell, RapidPath, SectionPlace, Shape, Turn};
+use turnwright_geometry as geometry;
 use turnwright_units::{Feed, Position, WorkTip};
 
 /// Segments kept; about 200 MB when all are used.
 pub const PATH_SEGMENTS_MAX: usize = 2_000_000;
+
+/// How near the arcs that are drawn for an ellipse or a parabola stay to it, millimetres.
+const CURVE_TOLERANCE_MM: f64 = 0.002;
 
 /// A place in the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -175,21 +179,16 @@ impl PathRecorder {
         match &command.action {
             Action::Rapid { path, .. } => self.add_rapid(command, end, *path),
             Action::Feed { shape, feed, .. } => {
-                let bow = match shape {
-                    // The picture is the section: an arc across it is seen from its edge.
-                    Shape::Line | Shape::SideArc { .. } => None,
-                    Shape::Arc { turn, centre } => bow_between(self.at, end, *centre, *turn),
-                };
                 let mm = feed.length().to_mm() as f32;
                 let advance = match feed {
                     Feed::PerRevolution(_) => Advance::MmPerRevolution(mm),
                     Feed::PerMinute(_) => Advance::MmPerMinute(mm),
                 };
-                self.add_cut(command, end, bow, SegmentKind::Feed, advance);
+                self.add_cut(command, end, shape, SegmentKind::Feed, advance);
             }
-            Action::Thread { lead, .. } => {
+            Action::Thread { shape, lead, .. } => {
                 let advance = Advance::LeadMm(lead.0.to_mm() as f32);
-                self.add_cut(command, end, None, SegmentKind::Thread, advance);
+                self.add_cut(command, end, shape, SegmentKind::Thread, advance);
             }
             Action::Relocate { to, .. } => self.at = *to,
             Action::Tool { tool, .. } => self.tool = *tool,
@@ -256,16 +255,48 @@ impl PathRecorder {
         &mut self,
         command: &Command,
         to: Position<WorkTip>,
-        bow: Option<Bow>,
+        shape: &Shape,
         kind: SegmentKind,
         advance: Advance,
     ) {
+        let bow = match shape {
+            // The picture is the section: an arc across it is seen from its edge.
+            Shape::Line | Shape::SideArc { .. } => None,
+            Shape::Arc { turn, centre } => bow_between(self.at, to, *centre, *turn),
+            Shape::Curve(curve) => return self.add_curve(command, to, curve, kind, advance),
+        };
         if to == self.at && bow.is_none() {
             return;
         }
         self.begin_move(command, Some(advance), 1);
         let segment = Segment { start: point(self.at), end: point(to), bow, kind };
         self.push(segment);
+        self.at = to;
+    }
+
+    /// An ellipse or a parabola, drawn as arcs.
+    #[cold]
+    fn add_curve(
+        &mut self,
+        command: &Command,
+        to: Position<WorkTip>,
+        curve: &Curve,
+        kind: SegmentKind,
+        advance: Advance,
+    ) {
+        let drawn = |place: geometry::Point| Point { radius_mm: place.x as f32, z_mm: place.z as f32 };
+        let path = curve.path(self.at, to);
+        let arcs = path.arcs(CURVE_TOLERANCE_MM);
+        self.begin_move(command, Some(advance), arcs.clone().count());
+        let mut start = path.point_at(0.0);
+        for geometry::CurveArc { end, bend } in arcs {
+            let bow = bend.map(|geometry::Bend { centre, clockwise }| Bow {
+                centre: drawn(centre),
+                sweep_rad: geometry::sweep_rad(start, end, centre, clockwise) as f32,
+            });
+            self.push(Segment { start: drawn(start), end: drawn(end), bow, kind });
+            start = end;
+        }
         self.at = to;
     }
 
@@ -484,6 +515,22 @@ mod tests {
             let sweep = path.segments()[0].bow.expect("an arc").sweep_rad;
             assert!((sweep - sign * std::f32::consts::TAU).abs() < 1e-5, "{sweep}");
         }
+    }
+
+    #[test]
+    fn an_ellipse_is_one_move_of_arcs_that_join() {
+        let mut path = PathRecorder::new(at(0, 0), 1.0, 1.0);
+        let (half_along, half_across) = (Length::from_mm(20), Length::from_mm(10));
+        let tilt = turnwright_units::Angle::ZERO;
+        let (turn, centre) = (Turn::CounterClockwise, at(0, -20));
+        let ellipse = Curve::Ellipse { turn, centre, half_along, half_across, tilt };
+        path.add(&feed(at(20, -20), Shape::Curve(Box::new(ellipse))), 1.0);
+        let segments = path.segments_of(0);
+        assert_eq!((path.moves().len(), segments.len()), (1, path.segments().len()));
+        assert!((3..40).contains(&segments.len()), "{}", segments.len());
+        assert!(segments.windows(2).all(|pair| pair[0].end == pair[1].start));
+        assert!(segments.iter().all(|segment| segment.bow.is_some_and(|bow| bow.sweep_rad > 0.0)));
+        assert_eq!(segments.last().expect("arcs").end, point(at(20, -20)));
     }
 
     #[test]

@@ -7,10 +7,12 @@
 
 mod arc;
 mod corner;
+mod curve;
 mod line;
 
 pub use arc::{ArcFault, centre_from_radius, sweep_rad};
 pub use corner::{Bend, Breaking, Corner, CornerFault, Segment, break_corner};
+pub use curve::{Conic, CurveArc, CurveArcs, CurvePath, circle_through, ellipse_centre, parabola_vertex};
 pub use line::Line;
 
 /// A place in the half-section.

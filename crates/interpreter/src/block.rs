@@ -375,6 +375,7 @@ impl Core {
         if self.data_list.is_some() {
             return self.run_data_list(block);
         }
+        self.thread_blocks >>= 1;
         let depth = self.frames.len();
         if !self.macros.modal_calls.is_empty() && self.call_for_block(block, environment)? {
             return Ok(());

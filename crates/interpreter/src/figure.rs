@@ -174,7 +174,7 @@ impl Core {
         let here = self.resume();
         let cycle_line = self.line_cursor();
         let (modal, at, tip) = (self.modal.clone(), self.at, self.tip);
-        self.capture = Some(Capture { elements: Vec::new(), range });
+        self.capture = Some(Capture { elements: Vec::new(), curve_pieces: 0, range });
         self.go(first, call.environment)?;
         let read = self.read_figure(range, call);
         let behind = self.resume();

@@ -27,6 +27,7 @@ mod flow;
 mod functions;
 mod in_force;
 mod index;
+mod leads;
 pub mod limits;
 mod machine;
 mod macros;

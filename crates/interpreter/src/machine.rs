@@ -7,7 +7,7 @@ use turnwright_control::{Control, Setup, SetupFault};
 use turnwright_cycles::Element;
 use turnwright_diagnostics::{Diagnostic, SourceId};
 use turnwright_syntax::Block;
-use turnwright_units::{Displacement, Length, Position, Radius, SurfaceSpeed, WorkTip};
+use turnwright_units::{Angle, Displacement, Length, Position, Radius, SurfaceSpeed, WorkTip};
 
 use crate::Environment;
 use crate::auxiliary::Waiting;
@@ -101,6 +101,8 @@ pub(crate) struct BlockPlace {
 #[derive(Debug)]
 pub(crate) struct Capture {
     pub(crate) elements: Vec<Element>,
+    /// Elements beyond the first that arcs of ellipses and parabolas take: they are no blocks.
+    pub(crate) curve_pieces: usize,
     pub(crate) range: FigureRange,
 }
 
@@ -160,6 +162,12 @@ pub(crate) struct Core {
     pub(crate) roughed: Vec<(u32, u32)>,
     /// Lines of figures that were finished before anything roughed them.
     pub(crate) finished_first: Vec<u32>,
+    /// Bit 0: the block before was a thread; bit 1: the block in work is one.
+    pub(crate) thread_blocks: u8,
+    /// Where the thread in work started: of a chain, its first block.
+    pub(crate) thread_start_angle: Angle,
+    /// The thread before was left by a run-out.
+    pub(crate) ends_in_run_out: bool,
     pub(crate) last_spindle: Option<turnwright_canon::Action>,
     pub(crate) parts: Parts,
     /// The block in work comes to rest at its end, those behind it do not.
@@ -211,7 +219,12 @@ impl Interpreter {
     ) -> Result<Self, SetupFault> {
         let always =
             control.policies.decimal_rule == turnwright_control::policy::DecimalRule::AlwaysCalculator;
-        let settings = Settings::new(&control.parameters, always, control.limits.number_digits);
+        let mut settings = Settings::new(&control.parameters, always, control.limits.number_digits);
+        if setup.machine.is_some() || setup.rates.contains_key("cutting_max_mm_per_min") {
+            // What the control does not limit, the machine that the user named does.
+            let machine_max = setup.machine()?.cutting_max_mm_per_min;
+            settings.thread_feed_max_mm_per_min.get_or_insert(machine_max);
+        }
         let dispatch = Dispatch::new(&control);
         let macros = Macros::new(&control);
         let machine = setup.machine()?;
@@ -230,6 +243,7 @@ impl Interpreter {
             feed_mode: settings.feed_mode_at_power_on,
             feed: None,
             path_mode: PathMode::default(),
+            lead_by_count: None,
             speed_mode: SpeedMode::Constant,
             rpm: Default::default(),
             surface: SurfaceSpeed::from_m_per_min(0),
@@ -289,6 +303,9 @@ impl Interpreter {
             corner: None,
             roughed: Vec::new(),
             finished_first: Vec::new(),
+            thread_blocks: 0,
+            thread_start_angle: Angle::ZERO,
+            ends_in_run_out: false,
             last_spindle: None,
             stops_once: false,
             has_untold_place: false,

@@ -30,6 +30,13 @@ pub(crate) struct SingleCycle {
     pub(crate) z: Option<Length>,
     pub(crate) taper: Length,
     pub(crate) start_angle_millidegrees: i64,
+    /// J and K of a thread: run-out across and along.
+    pub(crate) run_out_depth: Option<Length>,
+    pub(crate) run_out_length: Option<Length>,
+    /// Starts of a thread; 0 and 1 are one.
+    pub(crate) starts: u32,
+    /// The thread runs across the face.
+    pub(crate) is_face_thread: bool,
     pub(crate) pass: u32,
 }
 
@@ -47,6 +54,8 @@ pub(crate) struct Modal {
     /// The feed word in force: mm per minute or per revolution.
     pub(crate) feed: Option<Length>,
     pub(crate) path_mode: PathMode,
+    /// The lead that threads per inch gave, until a thread has another.
+    pub(crate) lead_by_count: Option<Length>,
     pub(crate) speed_mode: SpeedMode,
     pub(crate) rpm: Rpm,
     pub(crate) surface: SurfaceSpeed,
@@ -140,6 +149,11 @@ pub(crate) struct Settings {
     pub(crate) angle_as_supplement: bool,
     pub(crate) corner_length_to_corner: bool,
     pub(crate) dwell_in_revolutions: bool,
+    /// The fastest that the long axis of a thread may be, when that is limited.
+    pub(crate) thread_feed_max_mm_per_min: Option<f64>,
+    pub(crate) thread_speed_check_off: bool,
+    /// Speed of leaving a thread, mm per minute; `None` is rapid traverse.
+    pub(crate) thread_pull_out_feed: Option<Length>,
     pub(crate) run_out_tenths: u32,
     pub(crate) run_out_angle_deg: u8,
     pub(crate) cut_depth: Length,
@@ -262,6 +276,13 @@ impl Settings {
             angle_as_supplement: bit("angle-as-supplement"),
             corner_length_to_corner: bit("corner-length-to-corner"),
             dwell_in_revolutions: bit("dwell-in-revolutions"),
+            thread_feed_max_mm_per_min: ["cutting-feed-maximum", "cutting-feed-maximum-axis"]
+                .into_iter()
+                .map(|name| parameters.value(name))
+                .filter(|limit| *limit > 0.0)
+                .reduce(f64::min),
+            thread_speed_check_off: bit("thread-speed-check-off"),
+            thread_pull_out_feed: Some(mm("thread-pull-out-feed")).filter(|feed| feed.signum() > 0),
             run_out_tenths: count("thread-run-out"),
             run_out_angle_deg: count("thread-run-out-angle").min(89) as u8,
             cut_depth: mm("cycle-depth-of-cut"),

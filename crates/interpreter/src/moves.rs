@@ -1,6 +1,6 @@
 //! Giving out commands: moves, and the moves of cycles one by one.
 
-use turnwright_canon::{Action, Command, CycleLabel, CycleOrigin, Origin, RapidPath, Shape};
+use turnwright_canon::{Action, Command, Curve, CycleLabel, CycleOrigin, Origin, RapidPath, Shape, Turn};
 use turnwright_cycles::{
     BoxCycle, CycleMove, Element, FigureMotion, Groove, Pattern, Roughing, ThreadOnce, Threading,
 };
@@ -11,6 +11,7 @@ use crate::flow::FrameKind;
 use crate::limits;
 use crate::machine::{BlockPlace, Core};
 use crate::modal::FeedMode;
+use crate::plane::place;
 use crate::report::Alarm;
 
 /// A cycle whose moves are given out one by one.
@@ -56,7 +57,8 @@ impl CycleMoves {
             Self::Pattern(cycle) => cycle.move_estimate(),
             Self::Groove(cycle) => cycle.move_estimate(),
             Self::Threading(cycle) => cycle.move_estimate(),
-            Self::Box(_) | Self::ThreadOnce(_) => 4,
+            Self::Box(cycle) => cycle.move_estimate(),
+            Self::ThreadOnce(cycle) => cycle.move_estimate(),
         }
     }
 }
@@ -158,18 +160,54 @@ impl Core {
             Action::Feed { shape: Shape::Arc { turn, centre }, .. } => {
                 FigureMotion::Arc { turn: *turn, centre: *centre }
             }
+            Action::Feed { shape: Shape::Curve(curve), .. } => return self.capture_curve(to, curve),
             _ => return Err(self.alarm_block("figure-code-illegal")),
         };
+        self.capture_element(to, motion)
+    }
+
+    fn capture_element(&mut self, to: Position<WorkTip>, motion: FigureMotion) -> Result<(), Alarm> {
         let line = self.at.line;
         let limit = self.control.limits.figure_blocks_max as usize;
         if let Some(capture) = &mut self.capture {
-            if capture.elements.len() >= limit {
+            if capture.elements.len() - capture.curve_pieces >= limit {
                 let diagnostic = Diagnostic::alarm("figure-too-many-blocks").at(self.block_place());
                 return Err(self.finish(diagnostic.with("limit", limit as i64)));
             }
             capture.elements.push(Element { to, motion, line });
         }
         self.tip = to;
+        Ok(())
+    }
+
+    /// Cycles rough an ellipse or a parabola as arcs near it; finishing cuts the curve itself.
+    #[cold]
+    fn capture_curve(&mut self, to: Position<WorkTip>, curve: &Curve) -> Result<(), Alarm> {
+        let increment = self.modal.increment(&self.settings);
+        // Well below what rounding to the increment leaves anyway.
+        for arc in curve.path(self.tip, to).arcs(increment.to_mm() / 10.0) {
+            let end = place(arc.end).map_or(to, |end| {
+                Position::new(end.x.to_diameter().rounded(increment).to_radius(), end.z.rounded(increment))
+            });
+            let centre = arc.bend.and_then(|bend| Some((place(bend.centre)?, bend.clockwise)));
+            if end == self.tip {
+                continue;
+            }
+            self.capture_element(
+                end,
+                centre.map_or(FigureMotion::Line, |(centre, clockwise)| FigureMotion::Arc {
+                    turn: Turn::clockwise_if(clockwise),
+                    centre,
+                }),
+            )?;
+            if let Some(capture) = &mut self.capture {
+                capture.curve_pieces += 1;
+            }
+        }
+        if let Some(capture) = &mut self.capture {
+            // The block itself counts.
+            capture.curve_pieces = capture.curve_pieces.saturating_sub(1);
+        }
         Ok(())
     }
 

@@ -108,6 +108,12 @@ impl Core {
         }
     }
 
+    /// Turns the spindle, or stops it, without a word of the program.
+    pub(crate) fn turn_spindle(&mut self, state: SpindleState) {
+        self.modal.spindle = state;
+        self.emit_spindle();
+    }
+
     /// The state of the spindle as a command.
     pub(crate) fn spindle_action(&self) -> Action {
         let speed = match self.modal.speed_mode {

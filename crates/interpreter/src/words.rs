@@ -26,6 +26,8 @@ pub(crate) enum Role {
     ArcOffset,
     /// R of single cycles and of the threading cycle.
     TaperRadius,
+    /// J of threads: how far a run-out leaves.
+    RunOut,
     /// C, R, I and K of corners.
     CornerSize,
 }

@@ -10,7 +10,7 @@ use turnwright_canon::{Action, Command, Dwell, OtherAxes, RapidPath, Shape};
 use turnwright_units::{Feed, Lead, Position, WorkTip};
 
 use crate::axes::AxisPlaces;
-use crate::path::{ArcPath, point};
+use crate::path::{ArcPath, point, stretches};
 use crate::spindle::{Order, Spindle};
 use crate::surface::Slowness;
 use crate::{MachineRates, RapidSurfaceSpeed};
@@ -164,7 +164,12 @@ impl Clock {
         let timing = match &command.action {
             Action::Rapid { to, path, others } => self.rapid(*to, *path, others.as_deref()),
             Action::Feed { to, shape, feed, others } => self.cut(*to, shape, *feed, others.as_deref()),
-            Action::Thread { to, lead, lead_end, .. } => self.thread(*to, *lead, lead_end.unwrap_or(*lead)),
+            Action::Thread { to, shape, lead, lead_end, is_chained, .. } => {
+                if !is_chained {
+                    self.thread_rpm = None;
+                }
+                self.thread(*to, shape, *lead, lead_end.unwrap_or(*lead))
+            }
             Action::Dwell(dwell) => self.dwell(*dwell),
             Action::Spindle { state, speed, rpm_max } => {
                 self.spindle.command(*state, *speed, *rpm_max, &self.rates);
@@ -288,11 +293,17 @@ impl Clock {
         let (start, end) = (point(self.position), point(to));
         let arc = match shape {
             // Of an arc across the section X is taken to change evenly; it matters to the spindle only.
-            Shape::Line | Shape::SideArc { .. } => None,
+            Shape::Line | Shape::SideArc { .. } | Shape::Curve(_) => None,
             Shape::Arc { turn, centre } => Some(ArcPath::new(self.position, to, *centre, *turn)),
         };
-        let length_mm =
-            arc.map_or_else(|| libm::hypot(end.x - start.x, end.z - start.z), |arc| arc.length_mm());
+        // An ellipse or a parabola is measured as arcs.
+        let is_curve = matches!(shape, Shape::Curve(_));
+        let pieces = || stretches(self.position, to, shape);
+        let length_mm = match arc {
+            None if is_curve => pieces().map(|piece| piece.length_mm()).sum(),
+            None => libm::hypot(end.x - start.x, end.z - start.z),
+            Some(arc) => arc.length_mm(),
+        };
         let axes =
             others.map(|others| self.axes.cut(self.position, to, shape, length_mm, others, &self.rates));
         let (length_mm, feed_mm) =
@@ -307,13 +318,19 @@ impl Clock {
             }
             (Feed::PerRevolution(feed), Order::Surface(law)) => {
                 Slowness::new(feed.0.to_mm(), law, cutting_max).map(|slowness| match arc {
+                    None if is_curve => pieces().map(|piece| slowness.minutes_of(&piece)).sum(),
                     None => slowness.line_minutes(start.x, end.x, feed_mm),
                     Some(arc) => arc.circles().map(|circle| slowness.circle_minutes(&circle)).sum(),
                 })
             }
         };
         let minutes = axes.map_or(known, |way| longer(known, way.minutes_min));
-        let rpm = turning(self.speeds_along(start.x, end.x, arc));
+        let rpm = if is_curve {
+            self.speeds_along(start.x, end.x, pieces().filter_map(|piece| piece.arc))
+        } else {
+            self.speeds_along(start.x, end.x, arc.into_iter())
+        };
+        let rpm = turning(rpm);
         let waited_s = self.wait_for(self.spindle.order.rpm_at(start.x));
         let way = self.known_minutes(minutes, length_mm);
         self.spindle.follow(self.spindle.order.rpm_at(end.x));
@@ -327,11 +344,13 @@ impl Clock {
         }
     }
 
-    /// The spindle speeds along a line or an arc.
-    fn speeds_along(&self, start_x_mm: f64, end_x_mm: f64, arc: Option<ArcPath>) -> RpmRange {
+    /// The spindle speeds along a line, an arc or several.
+    fn speeds_along(&self, start_x_mm: f64, end_x_mm: f64, arcs: impl Iterator<Item = ArcPath>) -> RpmRange {
         let (mut low, mut high) = (start_x_mm.min(end_x_mm), start_x_mm.max(end_x_mm));
-        for turn in arc.iter().flat_map(ArcPath::turning_points) {
-            (low, high) = (low.min(turn.x), high.max(turn.x));
+        for arc in arcs {
+            for turn in arc.turning_points() {
+                (low, high) = (low.min(turn.x), high.max(turn.x));
+            }
         }
         let nearest = if low <= 0.0 && high >= 0.0 { 0.0 } else { low.abs().min(high.abs()) };
         let order = self.spindle.order;
@@ -346,7 +365,7 @@ impl Clock {
         seconds
     }
 
-    fn thread(&mut self, to: Position<WorkTip>, lead: Lead, lead_end: Lead) -> Timing {
+    fn thread(&mut self, to: Position<WorkTip>, shape: &Shape, lead: Lead, lead_end: Lead) -> Timing {
         let way = to - self.position;
         let (dx_mm, dz_mm) = (way.x.to_mm().abs(), way.z.to_mm().abs());
         let rpm = self.thread_rpm.unwrap_or_else(|| self.spindle.order.rpm_at(self.position.x.to_mm()));
@@ -354,8 +373,8 @@ impl Clock {
         let waited_s = self.wait_for(rpm);
         // A lead that changes evenly with the turns covers the way in as many turns as its mean does.
         let mean_lead_mm = (lead.0.to_mm() + lead_end.0.to_mm()) / 2.0;
-        let known =
-            self.known_minutes(minutes(dx_mm.max(dz_mm), mean_lead_mm * rpm), libm::hypot(dx_mm, dz_mm));
+        let length_mm = stretches(self.position, to, shape).map(|piece| piece.length_mm()).sum();
+        let known = self.known_minutes(minutes(dx_mm.max(dz_mm), mean_lead_mm * rpm), length_mm);
         Timing {
             kind: Kind::Threading,
             from: self.position,

@@ -6,7 +6,8 @@
 //!
 //! Invariants: every number is finite; nothing is allocated for a command; feed per revolution under constant
 //! surface speed is integrated in closed form along lines and circles, split where a speed limit begins, so
-//! the only error is that of floating point (relative [`TIME_TOLERANCE`]; spirals [`SPIRAL_TOLERANCE`]).
+//! the only error is that of floating point (relative [`TIME_TOLERANCE`]; spirals [`SPIRAL_TOLERANCE`]). Ellipses and
+//! parabolas are measured as arcs that stay within a hundredth of a micrometre of them.
 //!
 //! This first model knows no acceleration of the axes: what it leaves out or assumes is named in
 //! [`ESTIMATES`], so that a report can say so. Deliberately not here: text, alarms, look-ahead.
@@ -28,7 +29,8 @@ pub use summary::{Extents, OPERATIONS_MAX, Operation, OperationKind, Summary};
 /// Relative error of the seconds of lines, circles, threads, rapids and dwells against the model they follow.
 pub const TIME_TOLERANCE: f64 = 1e-9;
 
-/// Relative error of the seconds of arcs whose start and end lie at different distances from the centre.
+/// Relative error of the seconds of arcs whose start and end lie at different distances from the centre, and of
+/// ellipses and parabolas.
 pub const SPIRAL_TOLERANCE: f64 = 1e-5;
 
 /// What the times rest on besides the program: keys of sentences in the report.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use turnwright_canon::Turn;
+use turnwright_canon::{Shape, Turn};
 use turnwright_geometry::{Point, sweep_rad};
 use turnwright_units::{Length, Position, WorkTip};
 
@@ -108,6 +108,47 @@ impl ArcPath {
             })
         })
     }
+}
+
+/// How near the arcs that stand for an ellipse or a parabola stay to it, mm.
+const CURVE_TOLERANCE_MM: f64 = 1e-5;
+
+/// A stretch of a cutting move: straight or one arc.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stretch {
+    pub(crate) start: Point,
+    pub(crate) end: Point,
+    pub(crate) arc: Option<ArcPath>,
+}
+
+impl Stretch {
+    pub(crate) fn length_mm(&self) -> f64 {
+        let (start, end) = (self.start, self.end);
+        self.arc.map_or_else(|| libm::hypot(end.x - start.x, end.z - start.z), |arc| arc.length_mm())
+    }
+}
+
+/// The stretches of a cutting move, in order: one, or for an ellipse and a parabola as many as it takes.
+pub(crate) fn stretches(
+    from: Position<WorkTip>,
+    to: Position<WorkTip>,
+    shape: &Shape,
+) -> impl Iterator<Item = Stretch> {
+    let (start, end) = (point(from), point(to));
+    let (single, curve) = match shape {
+        // Of an arc across the section the path sees the chord.
+        Shape::Line | Shape::SideArc { .. } => (Some(Stretch { start, end, arc: None }), None),
+        Shape::Arc { turn, centre } => {
+            (Some(Stretch { start, end, arc: Some(ArcPath::new(from, to, *centre, *turn)) }), None)
+        }
+        Shape::Curve(curve) => (None, Some(curve.path(from, to).arcs(CURVE_TOLERANCE_MM))),
+    };
+    let pieces = curve.into_iter().flatten().scan(start, |start, piece| {
+        let bend = piece.bend;
+        let arc = bend.map(|bend| ArcPath::between(*start, piece.end, bend.centre, bend.clockwise));
+        Some(Stretch { start: std::mem::replace(start, piece.end), end: piece.end, arc })
+    });
+    single.into_iter().chain(pieces)
 }
 
 /// A piece of a circle, for integrals over X: x = centre + radius · sin(angle).

@@ -11,7 +11,7 @@
 use turnwright_canon::{Action, Command, CycleLabel, Origin, SectionPlace, Shape};
 use turnwright_units::{Length, Position, Radius, WorkTip};
 
-use crate::path::{ArcPath, length_from_mm};
+use crate::path::{length_from_mm, stretches};
 use crate::{Kind, RpmRange, Timing, Totals};
 
 /// Operations kept apart; later ones are added to the last.
@@ -49,9 +49,13 @@ impl Extents {
     /// The extents of a move, with the points where an arc turns round (rounded to the nanometre).
     fn of_move(action: &Action, from: Position<WorkTip>, to: Position<WorkTip>) -> Self {
         let mut extents = Self::of(from.x, from.z).with(Self::of(to.x, to.z));
-        if let Action::Feed { shape: Shape::Arc { turn, centre }, .. } = action {
-            for turn in ArcPath::new(from, to, *centre, *turn).turning_points() {
-                extents = extents.with(Self::of(Radius(length_from_mm(turn.x)), length_from_mm(turn.z)));
+        if let Action::Feed { shape, .. } | Action::Thread { shape, .. } = action
+            && *shape != Shape::Line
+        {
+            for arc in stretches(from, to, shape).filter_map(|stretch| stretch.arc) {
+                for turn in arc.turning_points() {
+                    extents = extents.with(Self::of(Radius(length_from_mm(turn.x)), length_from_mm(turn.z)));
+                }
             }
         }
         extents
@@ -338,6 +342,8 @@ mod tests {
             lead: Lead(Length::from_mm(1)),
             lead_end: None,
             start_angle: Angle::ZERO,
+            shape: Shape::Line,
+            is_chained: false,
         };
         let summary = summed(&[
             (1, 0, 0, Action::Coolant(turnwright_canon::Coolant::On)),
@@ -395,6 +401,32 @@ mod tests {
         assert_eq!(summary.cutting_extents(), Some(belly));
         let all = Extents { x_max: Radius(mm(50)), z_max: mm(100), ..belly };
         assert_eq!(summary.all_extents(), Some(all));
+    }
+
+    #[test]
+    fn extents_hold_the_belly_of_a_tilted_ellipse() {
+        // Half axes 20 and 10, the longer one at 30 degrees, from one end of it to the other: the highest place is
+        // √(20²·sin² 30 + 10²·cos² 30) = √175 above the centre.
+        let (along_z, along_x) = (17.320_508_f64, 10.0);
+        let mm = |mm: f64| Length::from_nm((mm * 1e6).round() as i64);
+        let place = |x: f64, z: f64| Position::new(Radius(mm(x)), mm(z));
+        let shape = Shape::Curve(Box::new(turnwright_canon::Curve::Ellipse {
+            turn: Turn::CounterClockwise,
+            centre: place(50.0, 0.0),
+            half_along: mm(20.0),
+            half_across: mm(10.0),
+            tilt: turnwright_units::Angle::from_millidegrees(30_000),
+        }));
+        let feed = Feed::PerMinute(FeedPerMinute(Length::from_mm(100)));
+        let cut = Action::Feed { to: place(50.0 - along_x, -along_z), shape, feed, others: None };
+        let rapid = Action::Rapid {
+            to: place(50.0 + along_x, along_z),
+            path: turnwright_canon::RapidPath::Straight,
+            others: None,
+        };
+        let summary = summed(&[(1, 0, 0, rapid), (2, 0, 0, cut)]);
+        let highest = summary.cutting_extents().expect("a cut").x_max.to_mm();
+        assert!((highest - 50.0 - 175.0f64.sqrt()).abs() < 2e-5, "{highest}");
     }
 
     #[test]

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use crate::path::{Circle, way_to};
+use crate::path::{Circle, Stretch, way_to};
 use crate::spindle::SurfaceLaw;
 
 /// Minutes that a millimetre of path takes, as a function of the distance from the axis.
@@ -62,6 +62,14 @@ impl Slowness {
         }
         // Divided first, so that a line of one piece is exact however little X it covers.
         sum / (high - low) * length_mm
+    }
+
+    /// Minutes for a straight stretch or an arc.
+    pub(crate) fn minutes_of(self, stretch: &Stretch) -> f64 {
+        match stretch.arc {
+            None => self.line_minutes(stretch.start.x, stretch.end.x, stretch.length_mm()),
+            Some(arc) => arc.circles().map(|circle| self.circle_minutes(&circle)).sum(),
+        }
     }
 
     /// Minutes for a piece of a circle.

@@ -1,7 +1,7 @@
 //! Times worked out by hand, each in the comment beside it.
 
 use turnwright_canon::{
-    Action, Command, Coolant, Dwell, Interpolation, Origin, OtherAxes, RapidPath, Shape, SidePlane,
+    Action, Command, Coolant, Curve, Dwell, Interpolation, Origin, OtherAxes, RapidPath, Shape, SidePlane,
     SidePoint, SpindleSpeed, SpindleState, Turn,
 };
 use turnwright_motion::{Clock, Kind, MachineRates, RapidSurfaceSpeed, Timing};
@@ -38,7 +38,17 @@ fn line(clock: &mut Clock, diameter: f64, z: f64, feed: Feed) -> Timing {
 fn thread(clock: &mut Clock, diameter: f64, z: f64, lead: f64, lead_end: Option<f64>) -> Timing {
     let to = at(diameter, z);
     let lead_end = lead_end.map(|lead| Lead(length(lead)));
-    run(clock, Action::Thread { to, lead: Lead(length(lead)), lead_end, start_angle: Angle::ZERO })
+    run(
+        clock,
+        Action::Thread {
+            to,
+            lead: Lead(length(lead)),
+            lead_end,
+            start_angle: Angle::ZERO,
+            shape: Shape::Line,
+            is_chained: false,
+        },
+    )
 }
 
 fn rapid(clock: &mut Clock, diameter: f64, z: f64, path: RapidPath) -> Timing {
@@ -331,4 +341,52 @@ fn in_a_virtual_plane_the_feed_is_along_the_virtual_path() {
     let timing = run(&mut clock, Action::Feed { to: at(0.0, 0.0), shape, feed, others: v(20.0) });
     near(timing.length_mm, 10.0 * std::f64::consts::PI);
     near(timing.seconds, 10.0 * std::f64::consts::PI);
+}
+
+#[test]
+fn curves_are_as_long_as_their_integrals() {
+    // A quarter of the ellipse with half axes 20 and 10: 20 · E(3/4), and E(3/4) = 1.2110560275684594.
+    let mut quarter = clock(0.0, 0.0);
+    let ellipse = Curve::Ellipse {
+        turn: Turn::CounterClockwise,
+        centre: at(0.0, -20.0),
+        half_along: length(20.0),
+        half_across: length(10.0),
+        tilt: Angle::ZERO,
+    };
+    let feed = Feed::PerMinute(FeedPerMinute(length(100.0)));
+    let curve = |curve, to| Action::Feed { to, shape: Shape::Curve(Box::new(curve)), feed, others: None };
+    let timing = run(&mut quarter, curve(ellipse, at(20.0, -20.0)));
+    assert!((timing.length_mm - 20.0 * 1.211_056_027_568_459_4).abs() < 1e-5, "{timing:?}");
+    assert!((timing.seconds - timing.length_mm * 0.6).abs() < 1e-9, "{timing:?}");
+    // x² = 10·(−z) up to radius 10: 5·√5 + 2.5·arsinh 2 = 14.789428...
+    let mut bow = clock(0.0, 0.0);
+    let parabola = Curve::Parabola {
+        turn: Turn::CounterClockwise,
+        vertex: at(0.0, 0.0),
+        focal_parameter: length(5.0),
+        tilt: Angle::from_millidegrees(180_000),
+    };
+    let timing = run(&mut bow, curve(parabola, at(20.0, -10.0)));
+    let expected = 5.0 * 5.0f64.sqrt() + 2.5 * (2.0 + 5.0f64.sqrt()).ln();
+    assert!((timing.length_mm - expected).abs() < 1e-5, "{timing:?} {expected}");
+}
+
+#[test]
+fn a_thread_along_an_arc_takes_the_turns_of_its_long_axis() {
+    // From 60 to 120 degrees on radius 10: 10 mm of Z at 2 mm a turn and 600 rpm are half a second; the way is
+    // 10·π/3.
+    let mut clock = clock(2.0 * 8.660_254, 5.0);
+    spindle(&mut clock, SpindleSpeed::Constant(Rpm(600)), None);
+    let action = Action::Thread {
+        to: at(2.0 * 8.660_254, -5.0),
+        shape: Shape::Arc { turn: Turn::CounterClockwise, centre: at(0.0, 0.0) },
+        lead: Lead(length(2.0)),
+        lead_end: None,
+        start_angle: Angle::ZERO,
+        is_chained: false,
+    };
+    let timing = run(&mut clock, action);
+    assert!((timing.seconds - timing.waited_s - 0.5).abs() < 1e-9, "{timing:?}");
+    assert!((timing.length_mm - 10.0 * std::f64::consts::FRAC_PI_3).abs() < 1e-5, "{timing:?}");
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use turnwright_canon::{
-    Action, Command, Dwell, Interpolation, Origin, OtherAxes, RapidPath, Shape, SidePlane, SidePoint,
+    Action, Command, Curve, Dwell, Interpolation, Origin, OtherAxes, RapidPath, Shape, SidePlane, SidePoint,
     SpindleSpeed, SpindleState, Turn,
 };
 use turnwright_motion::{
@@ -121,6 +121,30 @@ fn integrate(f: &dyn Fn(f64) -> f64) -> f64 {
 #[track_caller]
 fn near(value: f64, expected: f64, tolerance: f64, case: &dyn std::fmt::Debug) {
     assert!((value - expected).abs() <= expected * tolerance, "{value} instead of {expected}: {case:?}");
+}
+
+#[test]
+fn an_ellipse_with_equal_half_axes_takes_the_time_of_its_circle() {
+    let mut random = Random(13);
+    for _ in 0..300 {
+        let cut = Cut::random(&mut random);
+        let radius = random.between(1.0, 80.0);
+        let (start, way) = (random.between(0.0, TAU), random.between(0.1, 3.0));
+        let (x, z) = (random.between(-20.0, 150.0), random.between(-100.0, 0.0));
+        let on = |angle: f64| at(x + radius * angle.sin(), z + radius * angle.cos());
+        let turn = if random.chance(2) { Turn::Clockwise } else { Turn::CounterClockwise };
+        let (from, to) = match turn {
+            Turn::CounterClockwise => (on(start), on(start + way)),
+            Turn::Clockwise => (on(start + way), on(start)),
+        };
+        let (centre, half) = (at(x, z), length(radius));
+        let tilt = Angle::from_millidegrees(random.between(0.0, 180_000.0) as i64);
+        let ellipse = Curve::Ellipse { turn, centre, half_along: half, half_across: half, tilt };
+        let circle = cut.timing(from, to, Shape::Arc { turn, centre });
+        let curve = cut.timing(from, to, Shape::Curve(Box::new(ellipse)));
+        near(curve.seconds, circle.seconds, SPIRAL_TOLERANCE, &(cut, from, to));
+        near(curve.length_mm, circle.length_mm, SPIRAL_TOLERANCE, &(cut, from, to));
+    }
 }
 
 #[test]
@@ -290,6 +314,8 @@ fn any_action(random: &mut Random) -> Action {
             lead: Lead(any_length(random)),
             lead_end: random.chance(2).then(|| Lead(any_length(random))),
             start_angle: Angle::ZERO,
+            shape: Shape::Line,
+            is_chained: false,
         },
         5 if random.chance(2) => Action::Dwell(Dwell::Time(Seconds(number(random)))),
         5 => Action::Dwell(Dwell::Turns(Revolutions(number(random)))),

@@ -11,8 +11,8 @@
 //! but room in the buffer.
 
 use turnwright_canon::{
-    Action, Command, Coolant, Dwell, Interpolation, Origin, OtherAxes, PathMode, Shape, SidePlane,
-    SpindleSpeed, SpindleState, Turn,
+    Action, Command, Coolant, Curve, Dwell, Interpolation, Origin, OtherAxes, PathMode, Shape, SidePlane,
+    SpindleSpeed, SpindleState,
 };
 use turnwright_units::{
     Feed, LeastIncrement, Length, Position, WorkTip, write_degrees, write_fixed, write_millimetres,
@@ -70,14 +70,20 @@ pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
                 write_others(out, others, decimals);
             }
         }
-        Action::Thread { to, lead, lead_end, start_angle } => {
+        Action::Thread { to, shape, lead, lead_end, start_angle, is_chained } => {
             out.extend_from_slice(br#"{"op":"thread""#);
             write_end_point(out, *to, decimals);
+            if *shape != Shape::Line {
+                write_shape(out, *to, shape, None, decimals);
+            }
             write_length(out, br#","lead":"#, lead.0, FINE_DECIMALS);
             out.extend_from_slice(br#","q":"#);
             write_fixed(out, start_angle.millidegrees(), 3);
             if let Some(end) = lead_end {
                 write_length(out, br#","lead_end":"#, end.0, FINE_DECIMALS);
+            }
+            if *is_chained {
+                out.extend_from_slice(br#","chained":true"#);
             }
         }
         Action::PathMode(mode) => out.extend_from_slice(match mode {
@@ -170,36 +176,7 @@ fn write_feed(
     write_end_point(out, to, decimals);
     match shape {
         Shape::Line => out.extend_from_slice(br#","shape":"line""#),
-        Shape::Arc { turn, centre } => {
-            out.extend_from_slice(match turn {
-                Turn::Clockwise => br#","shape":"cw""#.as_slice(),
-                Turn::CounterClockwise => br#","shape":"ccw""#,
-            });
-            write_length(out, br#","cx":"#, centre.x.to_diameter().0, decimals);
-            write_length(out, br#","cz":"#, centre.z, decimals);
-            write_length(out, br#","r":"#, distance(to, *centre), decimals);
-        }
-        // The side axis is `cs`: the axis whose place the move gives, `y` or `v`.
-        Shape::SideArc { plane, turn, centre } => {
-            out.extend_from_slice(match turn {
-                Turn::Clockwise => br#","shape":"cw""#.as_slice(),
-                Turn::CounterClockwise => br#","shape":"ccw""#,
-            });
-            out.extend_from_slice(match plane {
-                SidePlane::Face => br#","plane":"face""#.as_slice(),
-                SidePlane::Flank => br#","plane":"flank""#,
-                SidePlane::Wall => br#","plane":"wall""#,
-            });
-            match plane {
-                SidePlane::Face => write_length(out, br#","cx":"#, centre.along + centre.along, decimals),
-                SidePlane::Flank | SidePlane::Wall => write_length(out, br#","cz":"#, centre.along, decimals),
-            }
-            write_length(out, br#","cs":"#, centre.side, decimals);
-            let end = plane.point(to, others.and_then(OtherAxes::side).unwrap_or_default());
-            let mm = (end.along - centre.along).to_mm().hypot((end.side - centre.side).to_mm());
-            let radius = Length::from_mm_rounded(mm, LeastIncrement::METRIC_C).unwrap_or(Length::ZERO);
-            write_length(out, br#","r":"#, radius, decimals);
-        }
+        shape => write_shape(out, to, shape, others, decimals),
     }
     write_length(out, br#","f":"#, feed.length(), FINE_DECIMALS);
     out.extend_from_slice(match feed {
@@ -237,6 +214,64 @@ fn write_interpolation(out: &mut Vec<u8>, interpolation: Interpolation, decimals
             write_length(out, br#"{"op":"interpolation","mode":"cylindrical","r":"#, radius.0, decimals);
         }
     }
+}
+
+/// The shape's word and what it is shaped by: centres and vertices with X as a diameter, everything else as it is
+/// measured in the half-section.
+fn write_shape(
+    out: &mut Vec<u8>,
+    to: Position<WorkTip>,
+    shape: &Shape,
+    others: Option<&OtherAxes>,
+    decimals: u8,
+) {
+    out.extend_from_slice(br#","shape":""#);
+    out.extend_from_slice(shape.word().as_bytes());
+    out.push(b'"');
+    let centre = |out: &mut Vec<u8>, centre: &Position<WorkTip>| {
+        write_length(out, br#","cx":"#, centre.x.to_diameter().0, decimals);
+        write_length(out, br#","cz":"#, centre.z, decimals);
+    };
+    let tilt = match shape {
+        Shape::Line => return,
+        Shape::Arc { centre: middle, .. } => {
+            centre(out, middle);
+            return write_length(out, br#","r":"#, distance(to, *middle), decimals);
+        }
+        // The side axis is `cs`: the axis whose place the move gives, `y` or `v`.
+        Shape::SideArc { plane, centre, .. } => {
+            out.extend_from_slice(match plane {
+                SidePlane::Face => br#","plane":"face""#.as_slice(),
+                SidePlane::Flank => br#","plane":"flank""#,
+                SidePlane::Wall => br#","plane":"wall""#,
+            });
+            match plane {
+                SidePlane::Face => write_length(out, br#","cx":"#, centre.along + centre.along, decimals),
+                SidePlane::Flank | SidePlane::Wall => write_length(out, br#","cz":"#, centre.along, decimals),
+            }
+            write_length(out, br#","cs":"#, centre.side, decimals);
+            let end = plane.point(to, others.and_then(OtherAxes::side).unwrap_or_default());
+            let mm = (end.along - centre.along).to_mm().hypot((end.side - centre.side).to_mm());
+            let radius = Length::from_mm_rounded(mm, LeastIncrement::METRIC_C).unwrap_or(Length::ZERO);
+            return write_length(out, br#","r":"#, radius, decimals);
+        }
+        Shape::Curve(curve) => match &**curve {
+            Curve::Ellipse { centre: middle, half_along, half_across, tilt, .. } => {
+                centre(out, middle);
+                write_length(out, br#","a":"#, *half_along, decimals);
+                write_length(out, br#","b":"#, *half_across, decimals);
+                tilt
+            }
+            Curve::Parabola { vertex, focal_parameter, tilt, .. } => {
+                write_length(out, br#","vx":"#, vertex.x.to_diameter().0, decimals);
+                write_length(out, br#","vz":"#, vertex.z, decimals);
+                write_length(out, br#","p":"#, *focal_parameter, decimals);
+                tilt
+            }
+        },
+    };
+    out.extend_from_slice(br#","tilt":"#);
+    write_fixed(out, tilt.millidegrees(), 3);
 }
 
 /// The fields that every command has, and the end of the line.
@@ -349,7 +384,7 @@ fn write_json_string(out: &mut Vec<u8>, text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use turnwright_canon::{CycleLabel, CycleOrigin, Phase, RapidPath};
+    use turnwright_canon::{CycleLabel, CycleOrigin, Phase, RapidPath, Turn};
     use turnwright_units::{
         Angle, FeedPerMinute, FeedPerRevolution, Lead, Radius, Revolutions, Rpm, Seconds, SurfaceSpeed,
     };
@@ -447,6 +482,8 @@ mod tests {
             lead: Lead(Length::from_nm(1_814_286)),
             lead_end,
             start_angle: Angle::from_millidegrees(180_500),
+            shape: Shape::Line,
+            is_chained: false,
         };
         assert_eq!(
             at_line_seven(thread(None)),
@@ -455,6 +492,51 @@ mod tests {
         assert!(
             at_line_seven(thread(Some(Lead(Length::from_mm(2)))))
                 .contains(r#""lead":1.814286,"q":180.5,"lead_end":2,"line""#)
+        );
+    }
+
+    #[test]
+    fn curves_have_the_data_of_their_equation() {
+        let feed = Feed::PerMinute(FeedPerMinute(Length::from_mm(100)));
+        let line = |curve| {
+            at_line_seven(Action::Feed {
+                to: at(20_000, -20_000),
+                shape: Shape::Curve(Box::new(curve)),
+                others: None,
+                feed,
+            })
+        };
+        let (turn, tilt) = (Turn::Clockwise, Angle::from_millidegrees(12_500));
+        let (half_along, half_across) = (Length::from_mm(20), Length::from_mm(10));
+        assert!(
+            line(Curve::Ellipse { turn, centre: at(20_000, 0), half_along, half_across, tilt }).contains(
+                r#""x":20,"z":-20,"shape":"ellipse-cw","cx":20,"cz":0,"a":20,"b":10,"tilt":12.5,"f":100,"#
+            )
+        );
+        let turn = Turn::CounterClockwise;
+        assert!(
+            line(Curve::Parabola { turn, vertex: at(1_000, -500), focal_parameter: half_across, tilt })
+                .contains(r#""shape":"parabola-ccw","vx":1,"vz":-0.5,"p":10,"tilt":12.5,"f":100,"#)
+        );
+    }
+
+    #[test]
+    fn a_thread_that_goes_on_says_so_and_an_arc_has_its_centre() {
+        let thread = |shape, is_chained| Action::Thread {
+            to: at(17_320, -5_000),
+            shape,
+            lead: Lead(Length::from_mm(2)),
+            lead_end: None,
+            start_angle: Angle::from_millidegrees(90_000),
+            is_chained,
+        };
+        assert!(
+            at_line_seven(thread(Shape::Line, true)).contains(r#""lead":2,"q":90,"chained":true,"line""#)
+        );
+        let arc = Shape::Arc { turn: Turn::Clockwise, centre: at(17_320, 5_000) };
+        assert!(
+            at_line_seven(thread(arc, false))
+                .contains(r#""z":-5,"shape":"cw","cx":17.32,"cz":5,"r":10,"lead":2,"q":90,"line""#)
         );
     }
 

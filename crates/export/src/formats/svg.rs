@@ -633,7 +633,14 @@ mod tests {
 
     fn thread(diameter_mm: f64, z_mm: f64) -> Action {
         let lead = Lead(Length::from_mm(2));
-        Action::Thread { to: at(diameter_mm, z_mm), lead, lead_end: None, start_angle: Angle::ZERO }
+        Action::Thread {
+            to: at(diameter_mm, z_mm),
+            lead,
+            lead_end: None,
+            start_angle: Angle::ZERO,
+            shape: Shape::Line,
+            is_chained: false,
+        }
     }
 
     fn recorded(actions: Vec<Action>) -> PathRecorder {

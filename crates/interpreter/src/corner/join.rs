@@ -52,8 +52,8 @@ impl Element {
     fn segment(&self) -> Option<Segment> {
         let bend = match self.shape {
             Shape::Line => None,
-            // Paths lie in the turning plane.
-            Shape::SideArc { .. } => return None,
+            // Paths lie in the turning plane, and corners are between lines and circles.
+            Shape::SideArc { .. } | Shape::Curve(_) => return None,
             Shape::Arc { turn, centre } => {
                 Some(Bend { centre: point(centre), clockwise: turn == Turn::Clockwise })
             }

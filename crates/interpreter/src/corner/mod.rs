@@ -361,7 +361,7 @@ impl Core {
             && last.end.is_some()
             && last.corner.is_none()
         {
-            let (to, action) = (last.to, last.motion.action(last.to, last.shape));
+            let (to, action) = (last.to, last.motion.action(last.to, last.shape.clone()));
             path.elements.clear();
             self.emit_move(to, action)?;
         }
@@ -379,12 +379,12 @@ impl Core {
         (self.at.line, self.at.sequence) = (first.line, first.sequence);
         match corner {
             None => {
-                self.emit_move(first.to, first.motion.action(first.to, first.shape))?;
+                self.emit_move(first.to, first.motion.action(first.to, first.shape.clone()))?;
                 second.start = first.end.unwrap_or(second.start);
             }
             Some(corner) => {
                 let (before, after) = (self.snapped(corner.from)?, self.snapped(corner.to)?);
-                self.emit_move(before, first.motion.action(before, first.shape))?;
+                self.emit_move(before, first.motion.action(before, first.shape.clone()))?;
                 let shape = self.corner_shape(&corner, before, after);
                 self.emit_move(after, first.motion.action(after, shape))?;
                 second.start = corner.to;

@@ -69,11 +69,7 @@ fn arc(core: &mut Core, call: &mut Call<'_>, turn: Turn) -> Result<(), Alarm> {
     if core.corner.is_some() || call.block.has_comma || call.block.present() & CORNERS != 0 {
         core.check_path_words(call.block)?;
     }
-    if core.untaken.is_some() {
-        // The way of the offset is no part of the arc.
-        core.warn_block("offset-moves-in-arc");
-        core.make_movement(call.word)?;
-    }
+    core.move_before_bend(call)?;
     let from = core.modal.position;
     let to = core.target(call.block)?;
     let Some(feed) = core.feed_in_force() else {
@@ -99,6 +95,17 @@ fn arc(core: &mut Core, call: &mut Call<'_>, turn: Turn) -> Result<(), Alarm> {
 }
 
 impl Core {
+    /// Makes what an offset has still to move before a move that is no line.
+    #[inline]
+    pub(super) fn move_before_bend(&mut self, call: &Call<'_>) -> Result<(), Alarm> {
+        if self.untaken.is_some() {
+            // The way of the offset is no part of the arc.
+            self.warn_block("offset-moves-in-arc");
+            self.make_movement(call.word)?;
+        }
+        Ok(())
+    }
+
     /// Words of corners and drawing dimensions in an arc, and an arc behind such words.
     #[cold]
     fn check_path_words(&mut self, block: &Block) -> Result<(), Alarm> {

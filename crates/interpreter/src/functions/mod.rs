@@ -6,6 +6,8 @@
 //! name. `linear.rs` is the model file.
 
 mod arc;
+mod arc_thread;
+mod conic;
 mod coordinate_setting;
 mod data_setting;
 mod dwell;
@@ -31,7 +33,9 @@ mod rough;
 mod single_cycles;
 mod skip;
 mod stroke_check;
+mod tapping_in_line;
 mod thread;
+mod three_point_arc;
 mod transforms;
 
 use turnwright_control::{CodeSystem, Control, Functions, parse_code};
@@ -235,7 +239,21 @@ static ALL: &[&Function] = &[
     &linear::LINEAR,
     &arc::ARC_CLOCKWISE,
     &arc::ARC_COUNTER_CLOCKWISE,
+    &three_point_arc::THREE_POINT_ARC,
+    &three_point_arc::THREE_POINT_ARC_ABSOLUTE,
+    &conic::ELLIPSE_CLOCKWISE,
+    &conic::ELLIPSE_COUNTER_CLOCKWISE,
+    &conic::PARABOLA_CLOCKWISE,
+    &conic::PARABOLA_COUNTER_CLOCKWISE,
     &thread::THREAD,
+    &thread::VARIABLE_LEAD_THREAD,
+    &thread::VARIABLE_LEAD_THREAD_R,
+    &thread::RIGID_THREAD,
+    &arc_thread::ARC_THREAD_CLOCKWISE,
+    &arc_thread::ARC_THREAD_COUNTER_CLOCKWISE,
+    &arc_thread::CIRCULAR_THREAD_CLOCKWISE,
+    &arc_thread::CIRCULAR_THREAD_COUNTER_CLOCKWISE,
+    &tapping_in_line::TAPPING_IN_LINE,
     &dwell::DWELL,
     &modes::INCH,
     &modes::METRIC,
@@ -359,8 +377,14 @@ impl Dispatch {
         let functions = Functions::load();
         let mut table = Box::new([0u8; 10_000]);
         let mut groups = [0; ALL.len()];
-        for (place, function) in ALL.iter().enumerate() {
-            let Some(entry) = functions.get(function.name) else { continue };
+        let entries =
+            || ALL.iter().enumerate().filter_map(|(place, f)| Some((place, functions.get(f.name)?)));
+        // What a parameter brings in comes last, in place of what had the code before.
+        let plain = entries().filter(|(_, entry)| entry.only_with().is_none());
+        let chosen = entries().filter(|(_, entry)| {
+            entry.only_with().is_some_and(|parameter| control.parameters.bit(parameter))
+        });
+        for (place, entry) in plain.chain(chosen) {
             groups[place] = entry.group().0;
             if !entry.is_on(control.code_table) {
                 continue;

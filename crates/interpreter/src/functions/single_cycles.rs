@@ -6,14 +6,20 @@
 //! degrees (5130, 5131). R is the taper: start of the cut less its end, a radius for G90 and G92, a Z length for
 //! G94.
 //!
+//! The words of the lead, and Q for the start angle, are those of single threads (`leads.rs`). On controls with the
+//! words: J and K are the run-out across and along instead of the parameters (J zero: none; K alone is as deep as
+//! long; J alone by policy as long as deep, or straight out at the end), L the number of starts, each a pass with its
+//! share of the turn, P1 a thread across the face. They stay in force like X and Z. The way out of a thread is at
+//! rapid, or at the speed set for it (1466).
+//!
 //! X, Z and R stay in force while the code does: a block with a new X repeats the cycle from the same start
 //! point. A code of its own without any axis word only takes effect with the next axis word.
 //!
 //! Source: single canned cycles of both families.
 
-use turnwright_control::policy::TaperSign;
+use turnwright_control::policy::{RunOutWords, TaperSign, ThreadCycleWords};
 use turnwright_cycles as cycles;
-use turnwright_units::{Angle, Feed, FeedPerRevolution, Length, Position, Radius};
+use turnwright_units::{Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position};
 
 use super::multi_thread::run_out;
 use super::{Function, letters};
@@ -37,7 +43,7 @@ pub(super) static FACING_CYCLE: Function =
         .repeating();
 
 pub(super) static THREAD_CYCLE: Function = Function::motion("thread-cycle", thread_cycle)
-    .with_letters(b"RQ")
+    .with_letters(b"RQEIJKLPCD")
     .triggered_by(b"R")
     .with_lead()
     .repeating();
@@ -53,34 +59,46 @@ fn box_cycle(core: &mut Core, call: &mut Call<'_>, first: cycles::FirstAxis) -> 
     core.check_taper(call, first, end, taper)?;
     let request = cycles::BoxRequest { context: core.cycle_context(feed), first, end, taper };
     let cycle = cycles::box_cycle(request).map_err(|fault| core.misuse(fault, call))?;
-    let passes_before = core.count_single_cycle();
+    let passes_before = core.count_single_cycle(1);
     core.start_cycle(CycleMoves::Box(Box::new(cycle)), call.code, Vec::new(), passes_before)
 }
 
 fn thread_cycle(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
-    core.refuse_comma_words(call.block)?;
-    let end = core.single_cycle_words(call, true)?;
+    let own: &[u8] = match core.control.policies.thread_cycle_words {
+        ThreadCycleWords::Plain => b"RQ",
+        ThreadCycleWords::StartsAndFace | ThreadCycleWords::StartsAndRepair => b"RQLP",
+    };
+    core.refuse_strange_thread_letters(call, own, core.run_out_letters())?;
+    core.thread_cycle_form(call)?;
+    let is_face = core.modal.cycle.is_face_thread;
+    let first = if is_face { cycles::FirstAxis::Z } else { cycles::FirstAxis::X };
+    let end = core.single_cycle_words(call, !is_face)?;
     let lead = core.lead_in_force(call)?;
     if call.block.has(b'Q') {
         core.modal.cycle.start_angle_millidegrees = core.start_angle(call)?.millidegrees();
     }
-    core.check_thread_spindle()?;
+    core.check_thread(call, lead)?;
     let taper = core.modal.cycle.taper;
-    core.check_taper(call, cycles::FirstAxis::X, end, taper)?;
+    core.check_taper(call, first, end, taper)?;
+    let (run_out, run_out_depth) = core.cycle_run_out(call, lead, end)?;
     let request = cycles::ThreadOnceRequest {
         context: core.cycle_context(Feed::PerRevolution(FeedPerRevolution(lead.0))),
+        along: if is_face { cycles::CutAlong::X } else { cycles::CutAlong::Z },
         end,
-        taper: Radius(taper),
+        taper,
         lead,
         start_angle: Angle::from_millidegrees(core.modal.cycle.start_angle_millidegrees),
-        run_out: run_out(lead, core.settings.run_out_tenths),
+        starts: core.modal.cycle.starts,
+        run_out,
         run_out_angle_deg: core.settings.run_out_angle_deg,
+        run_out_depth,
+        pull_out_feed: core.settings.thread_pull_out_feed.map(FeedPerMinute),
     };
     let cycle = cycles::thread_once(request).map_err(|fault| core.misuse(fault, call))?;
     if cycle.run_out_shortened().is_some() {
         core.warn_block("run-out-shortened");
     }
-    let passes_before = core.count_single_cycle();
+    let passes_before = core.count_single_cycle(cycle.passes());
     core.start_cycle(CycleMoves::ThreadOnce(Box::new(cycle)), call.code, Vec::new(), passes_before)
 }
 
@@ -115,10 +133,58 @@ impl Core {
         Ok(Position::new(self.modal.cycle.x.unwrap_or(here.x), self.modal.cycle.z.unwrap_or(here.z)))
     }
 
-    /// Counts the pass that begins; gives how many there were.
-    fn count_single_cycle(&mut self) -> u32 {
+    /// L and P of the thread cycle; they stay in force as X and Z do.
+    fn thread_cycle_form(&mut self, call: &Call<'_>) -> Result<(), Alarm> {
+        if let Some(word) = call.block.word(b'L') {
+            self.modal.cycle.starts = self.thread_starts(word)?;
+        }
+        if let Some(word) = call.block.word(b'P') {
+            let form = self.whole(word, 1)?;
+            if form == 1 && self.control.policies.thread_cycle_words == ThreadCycleWords::StartsAndRepair {
+                return Err(self.not_supported("thread-repair", word));
+            }
+            self.modal.cycle.is_face_thread = form == 1;
+        }
+        Ok(())
+    }
+
+    /// Length and depth of the run-out: J and K when one of them is in force, else by the parameters.
+    fn cycle_run_out(
+        &mut self,
+        call: &Call<'_>,
+        lead: Lead,
+        end: Position<turnwright_units::WorkTip>,
+    ) -> Result<(Length, Option<Length>), Alarm> {
+        let length = |word| self.unsigned_length(word);
+        let depth = call.block.word(b'J').map(length).transpose()?;
+        let along = call.block.word(b'K').map(length).transpose()?;
+        let cycle = &mut self.modal.cycle;
+        cycle.run_out_depth = depth.or(cycle.run_out_depth);
+        cycle.run_out_length = along.or(cycle.run_out_length);
+        let straight = self.control.policies.run_out_words == RunOutWords::StraightOut;
+        let (along, depth) = match (cycle.run_out_depth, cycle.run_out_length) {
+            (None, None) => return Ok((run_out(lead, self.settings.run_out_tenths), None)),
+            (None, Some(along)) => (along, along),
+            (Some(depth), along) => match along.filter(|along| !along.is_zero()) {
+                _ if depth.is_zero() => (Length::ZERO, depth),
+                Some(along) => (along, depth),
+                None if straight => (Length::ZERO, depth),
+                None => (depth, depth),
+            },
+        };
+        let way = end - self.modal.position;
+        let thread = if cycle.is_face_thread { way.x.0 } else { way.z };
+        if along > thread.abs() {
+            let word = call.block.word(b'K').or(call.block.word(b'J')).or(call.word);
+            return Err(self.alarm_at("run-out-too-long", word));
+        }
+        Ok((along, Some(depth)))
+    }
+
+    /// Counts the passes that begin; gives how many there were.
+    fn count_single_cycle(&mut self, passes: u32) -> u32 {
         let before = self.modal.cycle.pass;
-        self.modal.cycle.pass = before.saturating_add(1);
+        self.modal.cycle.pass = before.saturating_add(passes);
         before
     }
 
