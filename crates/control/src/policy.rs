@@ -479,6 +479,20 @@ policies! {
         /// The next one after that of X.
         Neighbours,
     }
+    /// The variables of work zeros.
+    work_zero_variables: WorkZeroVariables {
+        /// Programs read and write them.
+        Writable,
+        /// Programs read them.
+        ReadOnly,
+    }
+    /// Which variables of the modal state programs see.
+    modal_variables: ModalVariables {
+        /// All groups and addresses.
+        All,
+        /// Those that the manual lists.
+        Listed,
+    }
     /// What the clock variables count.
     clock_variables: ClockVariables {
         /// Milliseconds since power-on, and hours of automatic operation.

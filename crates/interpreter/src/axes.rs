@@ -173,8 +173,8 @@ impl Core {
             }
             let nanodegrees = i128::from(number.digits) * 10i128.pow(9 - u32::from(number.scale));
             let half = match self.control.policies.fine_digits {
-                FineDigits::Cut => 0,
-                FineDigits::Round => step / 2 * nanodegrees.signum(),
+                FineDigits::Cut if !number.is_computed() => 0,
+                FineDigits::Cut | FineDigits::Round => step / 2 * nanodegrees.signum(),
             };
             (nanodegrees + half) / step
         } else {

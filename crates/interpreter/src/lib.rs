@@ -37,6 +37,7 @@ mod offsets;
 mod parts;
 mod plane;
 mod punch;
+mod reading;
 mod report;
 mod reset;
 mod spindle;

@@ -266,7 +266,6 @@ impl Core {
     }
 
     /// Writes a value of the tables.
-    #[allow(dead_code, reason = "system variables read and write the tables")]
     pub(crate) fn set_offset_value(
         &mut self,
         table: OffsetTable,
@@ -311,14 +310,12 @@ impl Core {
     }
 
     /// The tip direction of an offset.
-    #[allow(dead_code, reason = "system variables read and write the tables")]
     pub(crate) fn offset_tip(&self, number: u32) -> Result<u8, OffsetFault> {
         self.check_offset_number(number)?;
         Ok(self.offsets.row(number).tip)
     }
 
     /// Writes the tip direction of an offset.
-    #[allow(dead_code, reason = "system variables read and write the tables")]
     pub(crate) fn set_offset_tip(&mut self, number: u32, tip: u8) -> Result<(), OffsetFault> {
         self.store_offset_tip(number, tip)?;
         self.after_offset_change(number);

@@ -90,7 +90,7 @@ impl Core {
     fn length_of(&self, word: &Word, number: Decimal, counts: bool) -> Result<Length, Alarm> {
         let increment = self.modal.increment(&self.settings).nm();
         let digits_max = POWER[usize::from(self.control.limits.number_digits.min(9))];
-        if number.digits.abs() >= digits_max {
+        if number.digits.abs() >= digits_max && !number.is_computed() {
             return Err(self.alarm("number-too-long", word));
         }
         if counts {
@@ -236,7 +236,7 @@ impl Core {
             }
         };
         let digits_max = POWER[usize::from(self.control.limits.number_digits.min(9))];
-        if number.scale > 9 || number.digits >= digits_max {
+        if number.scale > 9 || (number.digits >= digits_max && !number.is_computed()) {
             return Err(self.alarm("number-too-long", word));
         }
         match number.digits.checked_mul(mul) {

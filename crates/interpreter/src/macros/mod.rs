@@ -9,6 +9,7 @@ mod calls;
 mod code;
 mod output;
 mod statement;
+mod stored;
 mod system;
 mod type_a;
 mod variables;

@@ -9,14 +9,15 @@
 use std::ops::Range;
 
 use turnwright_canon::Action;
-use turnwright_control::policy::{ClockVariables, NineThousandVariables, PositionVariables};
+use turnwright_control::policy::{ClockVariables, ModalVariables, NineThousandVariables, PositionVariables};
 use turnwright_diagnostics::Diagnostic;
-use turnwright_units::{Length, MachineTurret, Position, WorkTip};
 
 use super::variables::{NULL, number};
 use crate::Environment;
 use crate::machine::{Core, Halt, SyncReason};
+use crate::offsets::{OffsetField, OffsetTable};
 use crate::report::Alarm;
+use crate::zeros::STANDARD_SYSTEMS;
 
 /// What system variables hold that nothing else does.
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,8 +37,11 @@ pub(crate) struct State {
 pub(super) enum Axis {
     X,
     Z,
+    C,
+    Y,
+    B,
     /// One that this machine does not have: it stands at 0.
-    Other,
+    None,
 }
 
 impl Core {
@@ -80,7 +84,6 @@ impl Core {
 
     fn read_system(&mut self, variable: u32, environment: &mut dyn Environment) -> Result<Option<f64>, Halt> {
         let clock = self.control.policies.clock_variables;
-        let unit = if self.modal.is_inch { 25.4 } else { 1.0 };
         let value = match variable {
             1000..=1031 => f64::from(u8::from(environment.macro_input((variable - 1000) as u8))),
             1032 => f64::from(inputs(environment, 16)),
@@ -107,26 +110,101 @@ impl Core {
             3003 => f64::from(self.macros.state.single_block),
             3004 => f64::from(self.macros.state.hold),
             3005 => f64::from(u8::from(self.modal.is_inch) << 2),
+            // The mirror of the double turret is one in X.
+            3007 => f64::from(u8::from(self.transform.is_mirrored)),
             3011 => environment.now().map_or(0.0, |now| {
                 f64::from(u32::from(now.year) * 10_000 + u32::from(now.month) * 100 + u32::from(now.day))
             }),
             3012 => environment.now().map_or(0.0, |now| {
                 f64::from(u32::from(now.hour) * 10_000 + u32::from(now.minute) * 100 + u32::from(now.second))
             }),
-            5001..=5008 => work(self.position_axis(variable - 5001), self.modal.position) / unit,
+            4001..=4022 if self.shows_modal(variable) => {
+                let code = self.modal_codes()[(variable - 4000) as usize];
+                code.map_or(0.0, |code| f64::from(code) / 10.0)
+            }
+            4102..=4130 if self.shows_modal(variable) => match modal_address(variable) {
+                Some(b'P') => self.additional_system().map_or(0.0, |system| system as f64),
+                Some(letter) => self.modal_word(letter).unwrap_or(0.0),
+                None => return Ok(None),
+            },
+            5001..=5008 => self.work_place(self.position_axis(variable - 5001)),
             5021..=5028 => {
                 self.wait_for_moves()?;
-                machine(self.position_axis(variable - 5021), self.machine_position()) / unit
+                let place = self.machine_position();
+                match self.position_axis(variable - 5021) {
+                    Axis::X => place.x.to_diameter().0.to_mm() / self.unit_mm(),
+                    Axis::Z => place.z.to_mm() / self.unit_mm(),
+                    other => self.other_place(other),
+                }
             }
             5041..=5048 => {
                 self.wait_for_moves()?;
-                work(self.position_axis(variable - 5041), self.modal.position) / unit
+                self.work_place(self.position_axis(variable - 5041))
             }
+            5061..=5068 => self.skip_place_of(self.position_axis(variable - 5061)),
+            5081..=5088 => self.active_offset(OffsetTable::Wear, self.position_axis(variable - 5081)),
+            5121..=5128 => self.active_offset(OffsetTable::Geometry, self.position_axis(variable - 5121)),
             // Axes of a simulated machine follow exactly.
             5101..=5108 => 0.0,
-            _ => return Ok(None),
+            _ => return Ok(self.read_stored(variable)),
         };
         Ok(Some(value))
+    }
+
+    /// Whether the control lets programs see this modal variable.
+    fn shows_modal(&self, variable: u32) -> bool {
+        match self.control.policies.modal_variables {
+            ModalVariables::All => true,
+            ModalVariables::Listed => matches!(
+                variable,
+                4001 | 4002 | 4005..=4007 | 4012 | 4014 | 4016 | 4109 | 4113..=4115 | 4119 | 4120
+            ),
+        }
+    }
+
+    /// The additional work system in force, from 1.
+    fn additional_system(&self) -> Option<usize> {
+        (self.modal.work + 1).checked_sub(STANDARD_SYSTEMS).filter(|system| *system > 0)
+    }
+
+    fn work_place(&self, axis: Axis) -> f64 {
+        match axis {
+            Axis::X => self.modal.position.x.to_diameter().0.to_mm() / self.unit_mm(),
+            Axis::Z => self.modal.position.z.to_mm() / self.unit_mm(),
+            other => self.other_place(other),
+        }
+    }
+
+    /// Where the last skip signal came.
+    pub(super) fn skip_place_of(&self, axis: Axis) -> f64 {
+        let place = self.skip_position();
+        match axis {
+            Axis::X => place.x.to_diameter().0.to_mm() / self.unit_mm(),
+            Axis::Z => place.z.to_mm() / self.unit_mm(),
+            other => self.other_place(other),
+        }
+    }
+
+    fn other_place(&self, axis: Axis) -> f64 {
+        match axis {
+            Axis::C => self.axes.at.c.to_degrees(),
+            Axis::Y => self.axes.at.y.to_mm() / self.unit_mm(),
+            Axis::B => self.axes.at.b.to_degrees(),
+            Axis::X | Axis::Z | Axis::None => 0.0,
+        }
+    }
+
+    /// A value of the offset in force; nothing without one.
+    fn active_offset(&self, table: OffsetTable, axis: Axis) -> f64 {
+        let field = match axis {
+            Axis::X => OffsetField::X,
+            Axis::Z => OffsetField::Z,
+            Axis::Y => OffsetField::Y,
+            Axis::C | Axis::B | Axis::None => return 0.0,
+        };
+        let by_tool = table == OffsetTable::Geometry && self.settings.offsets.geometry_by_tool_number;
+        let number = if by_tool { self.modal.tool } else { self.modal.offset };
+        self.offset_value(table, field, number).map_or(0.0, |length| length.to_mm() / self.unit_mm())
     }
 
     /// The axis that a position variable stands for.
@@ -134,7 +212,20 @@ impl Core {
         match (self.control.policies.position_variables, place) {
             (_, 0) => Axis::X,
             (PositionVariables::XThenZ, 1) | (PositionVariables::XThenYThenZ, 2) => Axis::Z,
-            _ => Axis::Other,
+            (PositionVariables::XThenYThenZ, 1) => Axis::Y,
+            (PositionVariables::XThenYThenZ, 3) => Axis::C,
+            (PositionVariables::XThenYThenZ, _) => Axis::None,
+            // The axes that the machine has, in the usual order of builders.
+            (PositionVariables::XThenZ, place) => {
+                let machine = &self.axes.machine;
+                let others = [
+                    (machine.c.is_some(), Axis::C),
+                    (machine.y.is_some(), Axis::Y),
+                    (machine.b.is_some(), Axis::B),
+                ];
+                let present = others.iter().filter(|(is_there, _)| *is_there);
+                present.map(|(_, axis)| *axis).nth(place as usize - 2).unwrap_or(Axis::None)
+            }
         }
     }
 
@@ -178,6 +269,7 @@ impl Core {
             Written::Done => Ok(()),
             Written::ReadOnly => Err(alarm(self, "variable-write-protected")),
             Written::OutOfRange => Err(alarm(self, "argument-out-of-range")),
+            Written::OffsetOutOfRange => Err(alarm(self, "offset-data-out-of-range")),
             Written::Unknown => Err(alarm(self, "variable-number-illegal")),
         }
     }
@@ -250,7 +342,7 @@ impl Core {
                 self.sync = Some(SyncReason::CycleStart);
             }
             1000..=1033 | 3007 | 3011 | 3012 | 4001..=4130 | 5001..=5128 => return Ok(Written::ReadOnly),
-            _ => return Ok(Written::Unknown),
+            _ => return Ok(self.write_stored(variable, value).unwrap_or(Written::Unknown)),
         }
         Ok(Written::Done)
     }
@@ -284,10 +376,12 @@ const COMMENT_CHARACTERS_MAX: usize = 80;
 
 /// What writing a system variable came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Written {
+pub(super) enum Written {
     Done,
     ReadOnly,
     OutOfRange,
+    /// More than an offset or a zero can hold.
+    OffsetOutOfRange,
     Unknown,
 }
 
@@ -300,18 +394,19 @@ fn inputs(environment: &dyn Environment, count: u8) -> u32 {
     (0..count).filter(|signal| environment.macro_input(*signal)).fold(0, |word, signal| word | 1 << signal)
 }
 
-fn work(axis: Axis, position: Position<WorkTip>) -> f64 {
-    millimetres(axis, position.x.to_diameter().0, position.z)
-}
-
-fn machine(axis: Axis, position: Position<MachineTurret>) -> f64 {
-    millimetres(axis, position.x.to_diameter().0, position.z)
-}
-
-fn millimetres(axis: Axis, x: Length, z: Length) -> f64 {
-    match axis {
-        Axis::X => x.to_mm(),
-        Axis::Z => z.to_mm(),
-        Axis::Other => 0.0,
-    }
+/// The address whose last value a variable holds.
+const fn modal_address(variable: u32) -> Option<u8> {
+    Some(match variable {
+        4102 => b'B',
+        4107 => b'D',
+        4109 => b'F',
+        4111 => b'H',
+        4113 => b'M',
+        4114 => b'N',
+        4115 => b'O',
+        4119 => b'S',
+        4120 => b'T',
+        4130 => b'P',
+        _ => return None,
+    })
 }
