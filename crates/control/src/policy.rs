@@ -493,6 +493,13 @@ policies! {
         /// Those that the manual lists.
         Listed,
     }
+    /// Where a skip leaves its place.
+    skip_variables: SkipVariables {
+        /// In the position variables of skips.
+        Positions,
+        /// Also in the common variables 995 (X) and 996 (Z).
+        CommonVariables,
+    }
     /// What the clock variables count.
     clock_variables: ClockVariables {
         /// Milliseconds since power-on, and hours of automatic operation.

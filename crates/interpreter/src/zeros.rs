@@ -125,7 +125,6 @@ fn pair(control: &Control, name: &str) -> AxisPair {
     AxisPair { x: value(Axis::X), z: value(Axis::Z) }
 }
 
-#[allow(dead_code, reason = "for data setting and system variables")]
 impl Zeros {
     /// The zeros that parameters and setup give.
     ///
@@ -271,7 +270,6 @@ impl Zeros {
     }
 }
 
-#[allow(dead_code, reason = "for data setting and system variables")]
 impl Core {
     /// From machine coordinates to the zero of the work system with every shift in force. With the mirror on, the
     /// tool is the one of the turret on the other side.

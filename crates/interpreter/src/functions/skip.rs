@@ -44,12 +44,12 @@ fn skip(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     let stop = core.signal_place(call.environment, input, to).unwrap_or(to);
     core.modal.position = stop;
     core.skip_place = stop;
+    core.tell_skip();
     core.emit_move(stop, Action::Feed { to: stop, shape: Shape::Line, feed, others: None })
 }
 
 impl Core {
     /// Where the last skip move ended, in the work system in force then.
-    #[allow(dead_code, reason = "for system variables")]
     pub(crate) fn skip_position(&self) -> Position<WorkTip> {
         self.skip_place
     }

@@ -9,7 +9,9 @@
 use std::ops::Range;
 
 use turnwright_canon::Action;
-use turnwright_control::policy::{ClockVariables, ModalVariables, NineThousandVariables, PositionVariables};
+use turnwright_control::policy::{
+    ClockVariables, ModalVariables, NineThousandVariables, PositionVariables, SkipVariables,
+};
 use turnwright_diagnostics::Diagnostic;
 
 use super::variables::{NULL, number};
@@ -176,12 +178,25 @@ impl Core {
     }
 
     /// Where the last skip signal came.
-    pub(super) fn skip_place_of(&self, axis: Axis) -> f64 {
+    fn skip_place_of(&self, axis: Axis) -> f64 {
         let place = self.skip_position();
         match axis {
             Axis::X => place.x.to_diameter().0.to_mm() / self.unit_mm(),
             Axis::Z => place.z.to_mm() / self.unit_mm(),
             other => self.other_place(other),
+        }
+    }
+
+    /// Puts the place of a skip into common variables, on controls that do.
+    pub(crate) fn tell_skip(&mut self) {
+        if self.control.policies.skip_variables != SkipVariables::CommonVariables {
+            return;
+        }
+        for (variable, axis) in [(995.0, Axis::X), (996.0, Axis::Z)] {
+            if let Some(slot) = self.macros.variables.slot(variable) {
+                let place = self.skip_place_of(axis);
+                self.macros.variables.set(slot, place);
+            }
         }
     }
 
