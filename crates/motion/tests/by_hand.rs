@@ -36,19 +36,13 @@ fn line(clock: &mut Clock, diameter: f64, z: f64, feed: Feed) -> Timing {
 }
 
 fn thread(clock: &mut Clock, diameter: f64, z: f64, lead: f64, lead_end: Option<f64>) -> Timing {
-    let to = at(diameter, z);
     let lead_end = lead_end.map(|lead| Lead(length(lead)));
-    run(
-        clock,
-        Action::Thread {
-            to,
-            lead: Lead(length(lead)),
-            lead_end,
-            start_angle: Angle::ZERO,
-            shape: Shape::Line,
-            is_chained: false,
-        },
-    )
+    run(clock, threaded(at(diameter, z), lead, lead_end, false))
+}
+
+fn threaded(to: Position<WorkTip>, lead: f64, lead_end: Option<Lead>, is_chained: bool) -> Action {
+    let (lead, start_angle) = (Lead(length(lead)), Angle::ZERO);
+    Action::Thread { to, shape: Shape::Line, lead, lead_end, start_angle, is_chained }
 }
 
 fn rapid(clock: &mut Clock, diameter: f64, z: f64, path: RapidPath) -> Timing {
@@ -212,7 +206,7 @@ fn a_chain_of_threads_keeps_the_speed_of_its_start() {
     let mut clock = clock(20.0, 0.0);
     spindle(&mut clock, surface(100), None);
     near(thread(&mut clock, 36.0, 0.0, 1.0, None).seconds, 0.301_593);
-    let second = thread(&mut clock, 20.0, 0.0, 1.0, None);
+    let second = run(&mut clock, threaded(at(20.0, 0.0), 1.0, None, true));
     near(second.seconds, 0.301_593);
     near(second.rpm.expect("turning").max, 1591.549);
 }
