@@ -514,6 +514,13 @@ policies! {
         /// The modal one ends.
         Cancels,
     }
+    /// A modal call of a macro while another is in force.
+    nested_modal_call: NestedModalCall {
+        /// Both are in force; the macro of the later one runs first.
+        Allowed,
+        /// Refused.
+        Refused,
+    }
     /// `G67` while no modal call is in force.
     macro_cancel_without_call: MacroCancelWithoutCall {
         /// Nothing happens.
@@ -672,7 +679,7 @@ pub struct Limits {
     pub m_subprogram: u32,
     /// First of the programs that single T codes call by parameter.
     pub t_call_program: u32,
-    /// The program that every T word calls when the parameter says so.
+    /// The program that every T word calls when the parameter says so; 0 for none.
     pub t_program: u32,
     /// The first of a thousand M codes that call the program of their own number; 0 for none.
     pub direct_calling_m_code: u32,

@@ -147,7 +147,7 @@ impl Core {
         }
         auxiliary.emit_before(self);
         let waiting_corner = self.corner.is_some();
-        let mut moves = codes.one_shot.is_some() && block.present() & AXES != 0;
+        let mut moves = false;
         let call = |word, code, environment| Call { block, environment, code, word };
         match codes.one_shot {
             Some(Code { id, code, word }) => {
@@ -183,10 +183,16 @@ impl Core {
         if auxiliary.acts_behind() | self.stops_once {
             self.behind_move(auxiliary, depth, block, environment)?;
         }
-        if moves && !self.macros.modal_calls.is_empty() && !self.is_capturing() {
+        if !self.macros.modal_calls.is_empty() && !self.is_capturing() && (moves || self.has_moves_to_give()) {
             self.call_after_move(environment)?;
         }
         Ok(())
+    }
+
+    /// Whether the block in work gave moves out, or began a cycle that will.
+    #[cold]
+    fn has_moves_to_give(&self) -> bool {
+        self.active.is_some() || self.out.iter().any(|command| command.action.end_point().is_some())
     }
 
     /// Whether the words of a block make a motion in force run; `other_letters` belong to modes and M words.

@@ -110,7 +110,7 @@ impl Core {
         } else if self.from == 0 {
             Resume { line: self.text.cursor(), from: 0 }
         } else {
-            Resume { line: self.line_cursor(), from: self.from }
+            Resume { from: self.from, ..self.place_in_line() }
         }
     }
 
@@ -292,14 +292,7 @@ impl Core {
             let this = Program { number: self.program, start: self.program_start };
             return Ok((this, count.unwrap_or(1)));
         };
-        let value = self.whole(target, 99_999_999)?;
-        let is_computed = matches!(target.value, Value::Number(number) if number.is_computed());
-        if is_computed
-            && value > 9_999
-            && self.control.policies.computed_program_number == ComputedProgramNumber::FourDigits
-        {
-            return Err(self.alarm("program-number-variable-too-large", target));
-        }
+        let value = self.program_word(target)?;
         let (number, rounds) = match count {
             Some(_) if value > 9_999 && self.control.limits.program_digits <= 4 => {
                 if self.control.policies.computed_program_number == ComputedProgramNumber::FourDigits {
@@ -320,6 +313,17 @@ impl Core {
             self.program_by_number(number, target, environment)?
         };
         Ok((program, rounds))
+    }
+
+    /// The number behind P.
+    fn program_word(&self, word: &Word) -> Result<u32, Alarm> {
+        let value = self.whole(word, 99_999_999)?;
+        let is_computed = matches!(word.value, Value::Number(number) if number.is_computed());
+        let holds_four = self.control.policies.computed_program_number == ComputedProgramNumber::FourDigits;
+        if is_computed && value > 9_999 && holds_four {
+            return Err(self.alarm("program-number-variable-too-large", word));
+        }
+        Ok(value)
     }
 
     fn enter_subprogram(
@@ -378,7 +382,7 @@ impl Core {
         let Some(target) = block.word(b'P') else {
             return Err(self.alarm("call-program-missing", call));
         };
-        let number = self.whole(target, 99_999_999)?;
+        let number = self.program_word(target)?;
         self.program_by_number(number, target, environment)
     }
 

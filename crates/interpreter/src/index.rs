@@ -313,7 +313,8 @@ fn sequence_key(program: u32, number: u32) -> u64 {
 fn may_hold_a_mark(bytes: &[u8]) -> bool {
     let head = bytes.iter().find(|byte| !matches!(byte, b' ' | b'\t' | 0xef | 0xbb | 0xbf));
     match head.map(u8::to_ascii_uppercase) {
-        Some(b'N' | b'O' | b':' | b'/' | b'<' | b'W' | b'D' | b'E') => true,
+        // Behind a comment anything may come.
+        Some(b'N' | b'O' | b':' | b'/' | b'<' | b'W' | b'D' | b'E' | b'(') => true,
         Some(b'M') => bytes.iter().any(|byte| matches!(byte, b'O' | b'o' | b';')),
         _ => bytes.contains(&b';'),
     }

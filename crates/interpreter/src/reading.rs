@@ -244,7 +244,7 @@ impl Core {
     }
 
     /// Where the next block begins, its line being read already.
-    fn place_in_line(&self) -> Resume {
+    pub(crate) fn place_in_line(&self) -> Resume {
         let source = self.text.source();
         let line = Cursor { source, offset: self.line.offset, line: self.line.number };
         Resume { line, from: self.from }
@@ -254,6 +254,7 @@ impl Core {
     #[cold]
     fn keep(&mut self, block: &Block, environment: &mut dyn Environment) -> Result<Option<Found>, Alarm> {
         let is_plain = block.skip.rest == 0
+            && !(block.computes && self.keeps_variable_words(block))
             && block.extents.iter().all(|extent| extent.kind != ExtentKind::Name)
             && block.faults.iter().all(|fault| fault.kind.is_harmless());
         if !is_plain || (block.skip.whole != 0 && skips(block.skip.whole, environment)) {
@@ -270,6 +271,7 @@ impl Core {
         let id = if let Some((from, to)) = block.macro_statement {
             self.statement_stands_alone(block)?;
             let statement = self.compile_statement(from..to)?;
+            self.check_loop(statement, environment)?;
             let frame = self.kept_frame(block, start, behind);
             self.cache.keep_statement(Kept::Statement(statement), frame.of(self.text.bytes(&self.line)))
         } else if block.words.is_empty() {

@@ -149,8 +149,8 @@ pub enum Statement {
     Assign(Expression, Expression),
     /// `IF [condition] GOTO n`
     IfGoto(Expression, Expression),
-    /// `IF [condition] THEN statement`
-    IfThen(Expression, Box<Statement>),
+    /// `IF [condition] THEN #i = value`
+    IfThen(Expression, Expression, Expression),
     /// `WHILE [condition] DO m`
     While(Expression, u32),
     /// `DO m`
@@ -224,7 +224,7 @@ pub fn parse_expression(line: &[u8], range: Range<u32>) -> Result<Expression, Ex
 /// The first place that cannot be read.
 pub fn parse_statement(line: &[u8], range: Range<u32>) -> Result<Statement, ExpressionFault> {
     let mut parser = Parser::new(line, range);
-    let statement = parser.statement(0)?;
+    let statement = parser.statement()?;
     parser.end()?;
     Ok(statement)
 }
@@ -243,6 +243,8 @@ struct Parser<'a> {
     open: u8,
     deepest: u8,
     bare_argument: Option<Range<u32>>,
+    /// Brackets may hold comparisons: those of `IF` and `WHILE` do.
+    compares: bool,
 }
 
 impl<'a> Parser<'a> {
@@ -256,6 +258,7 @@ impl<'a> Parser<'a> {
             open: 0,
             deepest: 0,
             bare_argument: None,
+            compares: false,
         }
     }
 
@@ -318,6 +321,22 @@ impl<'a> Parser<'a> {
             brackets: self.deepest,
             bare_argument: self.bare_argument.take(),
         }
+    }
+
+    /// What brackets hold.
+    fn inner(&mut self, depth: usize) -> Result<usize, ExpressionFault> {
+        self.binary(if self.compares { COMPARISONS } else { SUMS }, depth)
+    }
+
+    /// The bracket is closed, or what is wrong instead.
+    fn expect_closing(&mut self) -> Result<(), ExpressionFault> {
+        if self.close_bracket() {
+            return Ok(());
+        }
+        let at = self.at;
+        let compares = self.operator(COMPARISONS).is_some();
+        self.at = at;
+        self.fault(if compares { Expected::End } else { Expected::ClosingBracket })
     }
 
     fn open_bracket(&mut self) -> bool {
@@ -411,7 +430,7 @@ impl<'a> Parser<'a> {
             Some(b'#') => self.variable(depth + 1)?,
             Some(b'[') => self.bracket(depth + 1)?,
             Some(b'0'..=b'9') => self.number()?,
-            _ => return self.fault(Expected::VariableNumber),
+            _ => return Err(nameless_variable(start)),
         };
         Ok(self.add(Node::Variable(index), start))
     }
@@ -420,8 +439,9 @@ impl<'a> Parser<'a> {
         if !self.open_bracket() {
             return self.fault(Expected::OpeningBracket);
         }
-        let inner = self.binary(COMPARISONS, depth + 1)?;
-        if self.close_bracket() { Ok(inner) } else { self.fault(Expected::ClosingBracket) }
+        let inner = self.inner(depth + 1)?;
+        self.expect_closing()?;
+        Ok(inner)
     }
 
     fn number(&mut self) -> Result<usize, ExpressionFault> {
@@ -448,17 +468,18 @@ impl<'a> Parser<'a> {
             .iter()
             .find(|(word, _)| *word == name.as_slice())
             .or_else(|| FUNCTIONS.iter().find(|(word, _)| name.len() == 2 && word.starts_with(&name)));
-        let Some((_, function)) = found else { return self.fault(Expected::Function) };
+        let Some((_, function)) = found else {
+            let place = start as u32..(start + length) as u32;
+            return Err(ExpressionFault { expected: Expected::Function, place });
+        };
         self.at += length;
         let mut second = None;
         let first = if self.open_bracket() {
-            let inner = self.binary(COMPARISONS, depth + 1)?;
+            let inner = self.inner(depth + 1)?;
             if self.take(b',') {
-                second = Some(self.binary(COMPARISONS, depth + 1)?);
+                second = Some(self.inner(depth + 1)?);
             }
-            if !self.close_bracket() {
-                return self.fault(Expected::ClosingBracket);
-            }
+            self.expect_closing()?;
             inner
         } else {
             // Some controls take `SIN30`; whether this one does is for others to say.
@@ -495,7 +516,10 @@ impl<'a> Parser<'a> {
         if self.peek() != Some(b'[') {
             return self.fault(form);
         }
-        self.bracket(0)?;
+        self.compares = true;
+        let whole = self.bracket(0);
+        self.compares = false;
+        whole?;
         let expression = self.finish();
         use BinaryOperator as B;
         match expression.node(expression.root()) {
@@ -520,7 +544,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn statement(&mut self, depth: usize) -> Result<Statement, ExpressionFault> {
+    fn statement(&mut self) -> Result<Statement, ExpressionFault> {
         self.blanks();
         let start = self.at;
         for word in [&b"POPEN"[..], b"PCLOS", b"DPRNT", b"BPRNT", b"SETVN"] {
@@ -534,10 +558,19 @@ impl<'a> Parser<'a> {
             if self.take_word(b"GOTO") {
                 return Ok(Statement::IfGoto(condition, self.whole_expression(SUMS)?));
             }
-            if self.take_word(b"THEN") && depth == 0 {
-                return Ok(Statement::IfThen(condition, Box::new(self.statement(1)?)));
+            if !self.take_word(b"THEN") {
+                return self.fault(Expected::IfForm);
             }
-            return self.fault(Expected::IfForm);
+            self.blanks();
+            let then = self.at;
+            // A second IF is not read: a line of nothing else would go as deep as it is long.
+            if !self.take_word(b"IF")
+                && let Statement::Assign(target, value) = self.statement()?
+            {
+                return Ok(Statement::IfThen(condition, target, value));
+            }
+            let place = then as u32..self.at as u32;
+            return Err(ExpressionFault { expected: Expected::IfForm, place });
         }
         if self.take_word(b"WHILE") {
             let condition = self.condition(Expected::WhileForm)?;
@@ -555,14 +588,21 @@ impl<'a> Parser<'a> {
         if self.take_word(b"END") {
             return Ok(Statement::End(self.loop_number()?));
         }
+        self.blanks();
+        let variable = self.at;
         if self.take(b'#') {
             self.begin();
             match self.peek() {
                 Some(b'#') => self.variable(0)?,
                 Some(b'[') => self.bracket(0)?,
                 Some(b'0'..=b'9') => self.number()?,
-                _ => return self.fault(Expected::VariableNumber),
+                _ => return Err(nameless_variable(variable)),
             };
+            // Whoever refuses the variable means all of it.
+            if let Some((_, place)) = self.nodes.last_mut() {
+                place.start = variable as u32;
+                place.end = self.at as u32;
+            }
             let target = self.finish();
             if !self.take(b'=') {
                 return self.fault(Expected::EqualsSign);
@@ -571,6 +611,11 @@ impl<'a> Parser<'a> {
         }
         self.fault(Expected::Statement)
     }
+}
+
+/// A `#` without a number behind it.
+fn nameless_variable(at: usize) -> ExpressionFault {
+    ExpressionFault { expected: Expected::VariableNumber, place: at as u32..at as u32 + 1 }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! macro calls of both families; limits of nesting are limits of the control.
 
 use turnwright_control::Control;
-use turnwright_control::policy::{CallUnderModalCall, MacroCancelWithoutCall};
+use turnwright_control::policy::{CallUnderModalCall, MacroCancelWithoutCall, NestedModalCall};
 use turnwright_syntax::{Block, Value, Word};
 
 use super::arguments::Arguments;
@@ -80,20 +80,17 @@ impl CodeCalls {
             }
         };
         let first = |name: &str| parameters.value(name).max(0.0) as u32;
+        let calls_by = |name: &str| parameters.bit(name);
         for place in 0..CALLS {
             let number = place + 1;
-            single(
-                &mut calls.preparatory,
-                value(format!("macro-calling-g-code-{number}")),
-                10.0,
-                limits.g_call_program + place,
-            );
-            single(
-                &mut calls.auxiliary,
-                value(format!("macro-calling-m-code-{number}")),
-                1.0,
-                limits.m_call_program + place,
-            );
+            if calls_by("g-codes-call-macros") {
+                let code = value(format!("macro-calling-g-code-{number}"));
+                single(&mut calls.preparatory, code, 10.0, limits.g_call_program + place);
+            }
+            if calls_by("m-codes-call-macros") {
+                let code = value(format!("macro-calling-m-code-{number}"));
+                single(&mut calls.auxiliary, code, 1.0, limits.m_call_program + place);
+            }
             if number < CALLS {
                 single(
                     &mut calls.subprograms,
@@ -102,12 +99,10 @@ impl CodeCalls {
                     limits.m_subprogram + place,
                 );
             }
-            single(
-                &mut calls.tools,
-                value(format!("macro-calling-t-code-{number}")),
-                1.0,
-                limits.t_call_program + place,
-            );
+            if calls_by("tool-code-calls-program") {
+                let code = value(format!("macro-calling-t-code-{number}"));
+                single(&mut calls.tools, code, 1.0, limits.t_call_program + place);
+            }
         }
         // The other way to say it: a first code, a first program and how many.
         for place in 0..first("macro-calling-g-code-count").min(100) {
@@ -118,9 +113,8 @@ impl CodeCalls {
             let code = first("macro-calling-m-code-first") + place;
             single(&mut calls.auxiliary, f64::from(code), 1.0, first("m-range-program") + place);
         }
-        if parameters.bit("tool-code-calls-program") && calls.tools.is_empty() {
-            calls.any_tool = Some(limits.t_program);
-        }
+        let any_tool = calls_by("tool-code-calls-program") && limits.t_program > 0;
+        calls.any_tool = any_tool.then_some(limits.t_program);
         let direct = limits.direct_calling_m_code;
         calls.direct_auxiliary_first = (direct > 0).then_some(direct);
         calls
@@ -174,7 +168,7 @@ impl Core {
         environment: &mut dyn Environment,
     ) -> Result<(), Alarm> {
         self.check_call_block(block, call)?;
-        if self.is_type_a_block(block) {
+        if kind == CallKind::Simple && self.is_type_a_block(block) {
             return self.type_a(block, environment);
         }
         let arguments = self.arguments(block, Some(call), Arguments::OfCall)?;
@@ -193,7 +187,11 @@ impl Core {
             }
             CallKind::Modal | CallKind::EachBlock => {
                 let is_each_block = kind == CallKind::EachBlock;
-                if self.macros.modal_calls.len() >= usize::from(self.control.limits.macro_depth_max) {
+                let levels = match self.control.policies.nested_modal_call {
+                    NestedModalCall::Allowed => self.control.limits.macro_depth_max,
+                    NestedModalCall::Refused => 1,
+                };
+                if self.macros.modal_calls.len() >= usize::from(levels) {
                     return Err(self.alarm("macro-calls-too-deep", call));
                 }
                 self.macros.modal_calls.push(ModalCall { target, rounds, arguments, is_each_block });
@@ -255,22 +253,20 @@ impl Core {
 
     /// The modal call that comes next, seen from where execution is: the last one made, or inside one that runs
     /// the one made before it.
-    fn next_modal_call(&self) -> Option<usize> {
+    fn next_modal_call(&self) -> Option<(usize, ModalCall)> {
         let running = self.frames.iter().rev().find_map(|frame| match &frame.kind {
             FrameKind::Macro(frame) => frame.modal,
             _ => None,
         });
-        match running {
-            Some(level) => level.checked_sub(1),
-            None => self.macros.modal_calls.len().checked_sub(1),
-        }
+        // The macro that runs may have ended calls of its caller.
+        let level = running.unwrap_or(self.macros.modal_calls.len()).checked_sub(1)?;
+        Some((level, self.macros.modal_calls.get(level)?.clone()))
     }
 
     /// After a block that moved: the modal call in force.
     #[cold]
     pub(crate) fn call_after_move(&mut self, environment: &mut dyn Environment) -> Result<(), Alarm> {
-        let Some(level) = self.next_modal_call() else { return Ok(()) };
-        let call = self.macros.modal_calls[level].clone();
+        let Some((level, call)) = self.next_modal_call() else { return Ok(()) };
         if call.is_each_block {
             return Ok(());
         }
@@ -292,17 +288,15 @@ impl Core {
         block: &Block,
         environment: &mut dyn Environment,
     ) -> Result<bool, Alarm> {
-        let Some(level) = self.next_modal_call() else { return Ok(false) };
-        if !self.macros.modal_calls[level].is_each_block {
+        let Some((level, call)) = self.next_modal_call().filter(|(_, call)| call.is_each_block) else {
             return Ok(false);
-        }
+        };
         let Some(word) = block.words.iter().find(|word| !matches!(word.address, b'N' | b'O')).copied() else {
             return Ok(false);
         };
         if block.words.iter().any(|word| word.address == b'G' && self.is_cancel_code(word)) {
             return Ok(false);
         }
-        let call = self.macros.modal_calls[level].clone();
         let mut arguments = self.arguments(block, None, Arguments::OfBlock)?;
         for (argument, stored) in arguments.iter_mut().zip(call.arguments.iter()) {
             // What the block does not say again is as the call said it.

@@ -26,6 +26,8 @@ pub(crate) enum Op {
     Number(u16),
     Push,
     Negate,
+    /// The sign of a word.
+    NegateUnlessNull,
     AddConstant(f64),
     AddSlot(u16),
     SubtractConstant(f64),
@@ -90,8 +92,6 @@ pub(crate) enum CodeFault {
     Arguments,
     /// The function's argument stands without brackets.
     BareArgument,
-    /// What follows `THEN` is no assignment.
-    ThenForm,
     /// The number of a loop is not 1, 2 or 3.
     LoopNumber,
 }
@@ -239,6 +239,8 @@ impl Machine {
                     self.depth += 1;
                 }
                 Op::Negate => value = -number(value),
+                Op::NegateUnlessNull if is_null(value) => {}
+                Op::NegateUnlessNull => value = -value,
                 Op::AddConstant(constant) => value += constant,
                 Op::AddSlot(place) => value += slot(place),
                 Op::SubtractConstant(constant) => value -= constant,
@@ -464,6 +466,12 @@ impl Compiler<'_> {
             },
             Node::Negate(inner) => {
                 self.node(machine, inner, depth)?;
+                // `X-#1`: the sign belongs to the word, which is as if it were not there when the variable is empty.
+                let is_signed_word = self.in_word && index == self.expression.root();
+                if is_signed_word && matches!(self.expression.node(inner), Some((Node::Variable(_), _))) {
+                    machine.emit(Op::NegateUnlessNull, &place);
+                    return Ok(());
+                }
                 machine.emit(Op::Negate, &place);
             }
             Node::Call(function, first, second) => {

@@ -93,7 +93,7 @@ impl Core {
                     place += 1;
                 }
                 b'#' => {
-                    let (variable, format, next) = match print_item(inner, place) {
+                    let (variable, format, next) = match print_item(inner, place, is_decimal) {
                         Some(item) => item,
                         None => return Err(self.print_fault(at + place as u32..whole.end).into()),
                     };
@@ -145,8 +145,9 @@ struct Format {
     fraction: u8,
 }
 
-/// `#100[53]` at `from`: the variable, its format, and where the next item begins.
-fn print_item(text: &[u8], from: usize) -> Option<(Range<usize>, Format, usize)> {
+/// `#100[53]` at `from`: the variable, its format, and where the next item begins. Decimals have places before and
+/// behind the point, binary words only behind it.
+fn print_item(text: &[u8], from: usize, is_decimal: bool) -> Option<(Range<usize>, Format, usize)> {
     let mut at = from;
     while text.get(at) == Some(&b'#') {
         at += 1;
@@ -176,10 +177,10 @@ fn print_item(text: &[u8], from: usize) -> Option<(Range<usize>, Format, usize)>
     let digits = text.get(at..)?.strip_prefix(b"[")?;
     let end = digits.iter().position(|byte| *byte == b']')?;
     let format = match &digits[..end] {
-        [whole @ b'0'..=b'9', fraction @ b'0'..=b'9'] => {
+        [whole @ b'0'..=b'9', fraction @ b'0'..=b'9'] if is_decimal => {
             Format { whole: whole - b'0', fraction: fraction - b'0' }
         }
-        [fraction @ b'0'..=b'9'] => Format { whole: 0, fraction: fraction - b'0' },
+        [fraction @ b'0'..=b'9'] if !is_decimal => Format { whole: 0, fraction: fraction - b'0' },
         _ => return None,
     };
     Some((variable, format, at + 1 + end + 1))
@@ -216,8 +217,7 @@ fn decimal(value: f64, format: Format, without_blanks: bool) -> Option<String> {
 
 /// A value as a word of four bytes, the first highest, in hexadecimal: what goes over the wire is not text.
 fn binary(value: f64, format: Format) -> Option<String> {
-    let places = if format.whole == 0 { format.fraction } else { format.whole * 10 + format.fraction };
-    let scaled = (value * 10f64.powi(i32::from(places))).round();
+    let scaled = (value * 10f64.powi(i32::from(format.fraction))).round();
     let fits = scaled >= f64::from(i32::MIN) && scaled <= f64::from(i32::MAX);
     fits.then(|| format!("{:08X}", scaled as i32))
 }

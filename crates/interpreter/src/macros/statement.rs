@@ -94,29 +94,40 @@ impl Core {
             Written::IfGoto(condition, label) => {
                 Statement::IfGoto { condition: self.compile(condition)?, label: self.compile_label(label)? }
             }
-            Written::IfThen(condition, then) => match &**then {
-                Written::Assign(target, value) => {
-                    let condition = self.compile(condition)?;
-                    let (target, value) = self.compile_assignment(target, value)?;
-                    Statement::IfThen { condition, target, value }
-                }
-                _ => return Err((CodeFault::ThenForm, range.clone())),
-            },
+            Written::IfThen(condition, target, value) => {
+                let condition = self.compile(condition)?;
+                let (target, value) = self.compile_assignment(target, value)?;
+                Statement::IfThen { condition, target, value }
+            }
             Written::While(condition, loop_number) => {
-                check_loop_number(*loop_number, range)?;
+                self.check_loop_number(*loop_number, range)?;
                 Statement::While { condition: self.compile(condition)? }
             }
             Written::Do(loop_number) => {
-                check_loop_number(*loop_number, range)?;
+                self.check_loop_number(*loop_number, range)?;
                 Statement::Do
             }
             Written::End(loop_number) => {
-                check_loop_number(*loop_number, range)?;
+                self.check_loop_number(*loop_number, range)?;
                 Statement::End
             }
             Written::Goto(label) => Statement::Goto { label: self.compile_label(label)? },
             Written::Output(place) => Statement::Output { start: place.start, end: place.end },
         })
+    }
+
+    /// The number of a loop, the last thing in its statement.
+    fn check_loop_number(
+        &self,
+        loop_number: u32,
+        statement: &Range<u32>,
+    ) -> Result<(), (CodeFault, Range<u32>)> {
+        if (1..=3).contains(&loop_number) {
+            return Ok(());
+        }
+        let text = &self.line_bytes()[statement.start as usize..statement.end as usize];
+        let digits = text.iter().rev().take_while(|byte| byte.is_ascii_digit()).count() as u32;
+        Err((CodeFault::LoopNumber, statement.end - digits..statement.end))
     }
 
     fn compile(&mut self, expression: &Expression) -> Result<Code, (CodeFault, Range<u32>)> {
@@ -175,9 +186,13 @@ impl Core {
                 if !self.holds(condition, environment)? {
                     return Ok(self.leave_loop(environment)?);
                 }
-                self.check_loop(environment)?;
+                if self.cache.current.is_none() {
+                    self.check_loop(statement, environment)?;
+                }
             }
-            Statement::Do => self.check_loop(environment)?,
+            // A kept one was checked when it was kept.
+            Statement::Do if self.cache.current.is_some() => {}
+            Statement::Do => self.check_loop(statement, environment)?,
             Statement::End => return Ok(self.repeat_loop(environment)?),
             Statement::Output { start, end } => self.output(start..end, environment)?,
         }
@@ -227,23 +242,30 @@ impl Core {
                 let value = number(self.evaluate(code, 1.0, environment)?).round();
                 let max = sequence_max(self.control.limits.sequence_digits);
                 if !(1.0..=max).contains(&value) {
-                    let alarm = self.alarm_block("jump-number-out-of-range");
-                    return Err(alarm.into());
+                    return Err(self.label_alarm("jump-number-out-of-range", format!("{value}")).into());
                 }
                 value as u32
             }
         };
         let here = self.block_start();
         let Some((to, _)) = self.find_sequence(wanted, here, environment)? else {
-            let diagnostic = Diagnostic::alarm("jump-target-not-found").at(self.block_place());
-            let diagnostic = diagnostic.with("word", format!("N{wanted}"));
-            return Err(self.finish(diagnostic.with("sequence", i64::from(wanted))).into());
+            return Err(self.label_alarm("jump-target-not-found", format!("N{wanted}")).into());
         };
         if self.index(here.line.source, environment)?.enters_loop(here, to) {
-            let diagnostic = Diagnostic::alarm("jump-into-loop").at(self.block_place());
-            return Err(self.finish(diagnostic.with("word", format!("N{wanted}"))).into());
+            return Err(self.label_alarm("jump-into-loop", format!("N{wanted}")).into());
         }
         Ok(to)
+    }
+
+    /// An alarm at what stands behind the `GOTO` of the statement in work.
+    fn label_alarm(&self, key: &'static str, word: String) -> Alarm {
+        let (start, end) = (self.at.first_byte as usize, self.at.last_byte as usize);
+        let statement = self.line_bytes().get(start..end).unwrap_or(&[]);
+        let found = statement.windows(4).rposition(|word| word.eq_ignore_ascii_case(b"GOTO"));
+        let behind = found.map_or(0, |found| found + 4);
+        let blanks = statement[behind..].iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+        let place = self.at.span((start + behind + blanks) as u32, self.at.last_byte);
+        self.finish(Diagnostic::alarm(key).at(place).with("word", word))
     }
 
     #[inline]
@@ -269,10 +291,12 @@ impl Core {
     }
 
     /// A loop must have its end before it is entered.
-    #[inline]
-    fn check_loop(&mut self, environment: &mut dyn Environment) -> Result<(), Alarm> {
-        if self.cache.current.is_some() {
-            // It was checked when it ran for the first time.
+    pub(crate) fn check_loop(
+        &mut self,
+        statement: Statement,
+        environment: &mut dyn Environment,
+    ) -> Result<(), Alarm> {
+        if !matches!(statement, Statement::While { .. } | Statement::Do) {
             return Ok(());
         }
         let here = self.block_start();
@@ -336,14 +360,9 @@ impl Core {
             CodeFault::NoFunction => "macro-function-unavailable",
             CodeFault::Arguments => "function-argument-format",
             CodeFault::BareArgument => "opening-bracket-missing",
-            CodeFault::ThenForm => "if-format",
             CodeFault::LoopNumber => "loop-number-illegal",
         };
         let quote = self.quote(place.start, place.end);
         self.finish(Diagnostic::alarm(key).at(self.at.span(place.start, place.end)).with("word", quote))
     }
-}
-
-fn check_loop_number(loop_number: u32, range: &Range<u32>) -> Result<(), (CodeFault, Range<u32>)> {
-    if (1..=3).contains(&loop_number) { Ok(()) } else { Err((CodeFault::LoopNumber, range.clone())) }
 }

@@ -7,9 +7,11 @@ use turnwright_control::policy::TypeAMacro;
 use turnwright_diagnostics::Diagnostic;
 use turnwright_syntax::{BinaryOperator, Block, Function, Node, Value, Word, parse_expression};
 
+use super::CallKind;
 use super::code::CodeFault;
 use super::variables::number;
 use crate::Environment;
+use crate::functions::Kind;
 use crate::machine::{Core, Halt};
 use crate::report::Alarm;
 
@@ -88,12 +90,9 @@ impl Core {
     pub(crate) fn keeps_variable_words(&self, block: &Block) -> bool {
         self.is_type_a_block(block)
             && block.words.iter().any(|word| {
-                word.address == b'G'
-                    && self
-                        .code(word)
-                        .ok()
-                        .and_then(|code| self.dispatch.function(code))
-                        .is_some_and(|function| function.get().is_call())
+                let code = if word.address == b'G' { self.code(word).ok() } else { None };
+                let function = code.and_then(|code| self.dispatch.function(code));
+                function.is_some_and(|id| matches!(id.get().kind, Kind::Call(CallKind::Simple)))
             })
     }
 
