@@ -183,7 +183,8 @@ impl Core {
         if auxiliary.acts_behind() | self.stops_once {
             self.behind_move(auxiliary, depth, block, environment)?;
         }
-        if !self.macros.modal_calls.is_empty() && !self.is_capturing() && (moves || self.has_moves_to_give()) {
+        if !self.macros.modal_calls.is_empty() && !self.is_capturing() && (moves || self.has_moves_to_give())
+        {
             self.call_after_move(environment)?;
         }
         Ok(())
