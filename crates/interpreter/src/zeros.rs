@@ -305,11 +305,6 @@ impl Core {
         self.to_machine(Position::new(place.x - owed.x, place.z - owed.z))
     }
 
-    /// Where the tool is in the work system in force, at the end of the block in work.
-    pub(crate) fn work_position(&self) -> Position<WorkTip> {
-        self.modal.position
-    }
-
     /// A stored zero, X as a diameter; `None` when the control has no such system.
     pub(crate) fn work_zero(&self, zero: WorkZero, axis: Axis) -> Option<Length> {
         self.zeros.get(zero, axis)
