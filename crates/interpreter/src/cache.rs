@@ -70,14 +70,6 @@ pub(crate) struct Cache {
     open: Option<(BlockId, Way)>,
 }
 
-/// What running a kept block needs to know.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Found {
-    pub(crate) id: BlockId,
-    pub(crate) kept: Kept,
-    pub(crate) skip: u16,
-}
-
 impl Cache {
     /// Execution went back: what lies before `from` will run again.
     pub(crate) fn heat(&mut self, source: SourceId, from: u64) {
@@ -105,10 +97,10 @@ impl Cache {
     }
 
     /// The block at a place, if it is kept; it becomes the current one.
-    pub(crate) fn find(&mut self, at: Resume) -> Option<Found> {
+    pub(crate) fn find(&mut self, at: Resume) -> Option<BlockId> {
         let id = *self.places.get(&(at.line.source, at.line.offset, at.from as u32))?;
         self.arrive(id);
-        Some(self.found(id))
+        Some(id)
     }
 
     #[inline]
@@ -123,10 +115,11 @@ impl Cache {
         self.current = Some(id);
     }
 
+    /// What a block does, and the switches that skip it.
     #[inline]
-    pub(crate) fn found(&self, id: BlockId) -> Found {
+    pub(crate) fn kept(&self, id: BlockId) -> (&Kept, u16) {
         let entry = &self.entries[id.0 as usize];
-        Found { id, kept: entry.kept, skip: entry.skip }
+        (&entry.kept, entry.skip)
     }
 
     /// The place of the current block.

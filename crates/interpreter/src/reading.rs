@@ -8,7 +8,7 @@ use turnwright_diagnostics::Diagnostic;
 use turnwright_syntax::{Block, ExtentKind, scan_block};
 
 use crate::Environment;
-use crate::cache::{Found, Kept};
+use crate::cache::{BlockId, Kept};
 use crate::index::Resume;
 use crate::machine::{BlockPlace, Core, Halt};
 use crate::report::Alarm;
@@ -21,7 +21,7 @@ enum Read {
     /// A macro statement between these bytes of the line.
     Statement(u32, u32),
     /// A block that was kept.
-    Kept(Found),
+    Kept(BlockId),
     /// Nothing to execute on this line.
     Blank,
     /// The end of the record or of the text.
@@ -42,7 +42,7 @@ impl Core {
         match self.read_block(block, environment)? {
             Read::Blank => Ok(()),
             Read::End => Ok(self.end_of_record()?),
-            Read::Kept(found) => self.run_kept(found, block, environment),
+            Read::Kept(id) => self.run_kept(id, block, environment),
             Read::Statement(start, end) => self.read_statement(block, start..end, environment),
             Read::Block => {
                 self.count_block()?;
@@ -98,7 +98,7 @@ impl Core {
         self.statement_stands_alone(block)?;
         let mark = self.macros.machine.mark();
         let statement = self.compile_statement(range)?;
-        let result = self.run_statement(statement, environment);
+        let result = self.run_statement(&statement, environment);
         self.macros.machine.forget(mark);
         self.read_again_after(result, environment)?;
         if self.frames.is_empty() { Ok(()) } else { Ok(self.after_block(environment)?) }
@@ -115,21 +115,26 @@ impl Core {
         Ok(())
     }
 
+    /// A block that was kept: nothing is read, split or compiled again.
     #[inline]
     fn run_kept(
         &mut self,
-        found: Found,
+        id: BlockId,
         block: &mut Block,
         environment: &mut dyn Environment,
     ) -> Result<(), Halt> {
-        self.at = self.cache.place(found.id);
+        self.at = self.cache.place(id);
         self.count_block()?;
         self.count_idle(1)?;
-        if found.skip != 0 && skips(found.skip, environment) {
+        let (kept, skip) = self.cache.kept(id);
+        if skip != 0 && skips(skip, environment) {
             return Ok(self.go_on(environment)?);
         }
-        match found.kept {
-            Kept::Statement(statement) => self.run_statement(statement, environment)?,
+        match *kept {
+            Kept::Statement(ref statement) => {
+                let statement = *statement;
+                self.run_statement(&statement, environment)?;
+            }
             Kept::Blank => self.go_on(environment)?,
             Kept::Words { first, count, computes } => {
                 self.cache.refill(block, first, count);
@@ -141,7 +146,7 @@ impl Core {
                     })?;
                 }
                 self.execute(block, environment)?;
-                if self.cache.current == Some(found.id) {
+                if self.cache.current == Some(id) {
                     self.go_on(environment)?;
                 }
             }
@@ -180,7 +185,7 @@ impl Core {
     #[inline]
     fn read_block(&mut self, block: &mut Block, environment: &mut dyn Environment) -> Result<Read, Alarm> {
         if let Some(id) = self.cache.current {
-            return Ok(Read::Kept(self.cache.found(id)));
+            return Ok(Read::Kept(id));
         }
         if self.from == 0 {
             match self.text.next(environment) {
@@ -194,8 +199,8 @@ impl Core {
         }
         let source = self.text.source();
         let is_hot = self.cache.is_hot(source, self.line.offset);
-        if is_hot && let Some(found) = self.cache.find(self.place_in_line()) {
-            return Ok(Read::Kept(found));
+        if is_hot && let Some(id) = self.cache.find(self.place_in_line()) {
+            return Ok(Read::Kept(id));
         }
         let bytes = self.text.bytes(&self.line);
         let length = bytes.len();
@@ -226,8 +231,8 @@ impl Core {
         }
         if is_hot {
             self.count_idle(crate::limits::IDLE_READ_BLOCKS)?;
-            if let Some(found) = self.keep(block, environment)? {
-                return Ok(Read::Kept(found));
+            if let Some(id) = self.keep(block, environment)? {
+                return Ok(Read::Kept(id));
             }
         }
         self.cache.forget_way();
@@ -252,7 +257,7 @@ impl Core {
 
     /// Keeps a block of a loop, if nothing about it needs a second look.
     #[cold]
-    fn keep(&mut self, block: &Block, environment: &mut dyn Environment) -> Result<Option<Found>, Alarm> {
+    fn keep(&mut self, block: &Block, environment: &mut dyn Environment) -> Result<Option<BlockId>, Alarm> {
         let is_plain = block.skip.rest == 0
             && !(block.computes && self.keeps_variable_words(block))
             && block.extents.iter().all(|extent| extent.kind != ExtentKind::Name)
@@ -286,7 +291,7 @@ impl Core {
         if id.is_none() {
             self.macros.machine.forget(mark);
         }
-        Ok(id.map(|id| self.cache.found(id)))
+        Ok(id)
     }
 
     fn kept_frame(&self, block: &Block, start: Resume, behind: Resume) -> crate::cache::Place {

@@ -25,9 +25,10 @@ impl Decimal {
     #[inline]
     pub fn computed(value: f64) -> Option<Self> {
         let is_negative = value < 0.0;
-        let scaled = (value * 1e9).round();
+        let scaled = value * 1e9;
         let (digits, scale) = if scaled.abs() < 9e18 {
-            (scaled as i64, COMPUTED_PLACES)
+            // To the nearest, halves away from zero.
+            ((scaled + 0.5f64.copysign(scaled)) as i64, COMPUTED_PLACES)
         } else if value.abs() < 9e18 {
             (value.round() as i64, 0)
         } else {

@@ -289,7 +289,7 @@ impl Machine {
                 Op::RoundToIncrement => value = round(number(value) / self.increment) * self.increment,
             }
             // Null is no number and passes; whatever else is not within the limit has overflown.
-            if value.abs() > limit || (value.is_nan() && !is_null(value)) {
+            if !within(value, limit) && !is_null(value) {
                 break CodeFault::Overflow;
             }
         };
@@ -575,6 +575,12 @@ impl Compiler<'_> {
     }
 }
 
+/// False for what is not a number, too.
+#[inline]
+fn within(value: f64, limit: f64) -> bool {
+    value.abs() <= limit
+}
+
 fn divide(left: f64, right: f64) -> Result<f64, CodeFault> {
     if right == 0.0 { Err(CodeFault::DivideByZero) } else { Ok(left / right) }
 }
@@ -582,10 +588,14 @@ fn divide(left: f64, right: f64) -> Result<f64, CodeFault> {
 /// The sine of an angle in degrees, exact at every multiple of 90.
 #[inline]
 fn sine(degrees: f64) -> f64 {
-    let quarter = (degrees / 90.0).round();
+    /// Adding and taking away this rounds to a whole number.
+    const WHOLE: f64 = 6_755_399_441_055_744.0;
+    /// Beyond, neighbouring floats are about as far apart as a quarter turn.
+    const FAR: f64 = 1e15;
+    let degrees = if degrees.abs() < FAR { degrees } else { degrees % 360.0 };
+    let quarter = (degrees / 90.0 + WHOLE) - WHOLE;
     let rest = (degrees - quarter * 90.0).to_radians();
-    // Far out, neighbouring floats are further apart than a turn: any answer is as good, but it must be one.
-    match (quarter.rem_euclid(4.0) as i64) & 3 {
+    match quarter as i64 & 3 {
         0 => rest.sin(),
         1 => rest.cos(),
         2 => -rest.sin(),

@@ -166,10 +166,10 @@ impl Core {
     #[inline]
     pub(crate) fn run_statement(
         &mut self,
-        statement: Statement,
+        statement: &Statement,
         environment: &mut dyn Environment,
     ) -> Result<(), Halt> {
-        match statement {
+        match *statement {
             Statement::Assign { target, value } => self.assign(target, value, environment)?,
             Statement::IfThen { condition, target, value } => {
                 if self.holds(condition, environment)? {
