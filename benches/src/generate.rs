@@ -66,7 +66,52 @@ pub fn all(folder: &Path, blocks: u64) -> Result<(), String> {
     lines(folder, "numbered", blocks, true)?;
     lines(folder, "lines5", blocks * 5, false)?;
     arcs(folder, "arcs-centre", blocks, false)?;
-    arcs(folder, "arcs-radius", blocks, true)
+    arcs(folder, "arcs-radius", blocks, true)?;
+    loops(folder, blocks)?;
+    jumps(folder, blocks)
+}
+
+/// A loop that only computes, and one that moves in every round.
+fn loops(folder: &Path, rounds: u64) -> Result<(), String> {
+    let mut computing = Pair::create(folder, "loop")?;
+    computing.line(
+        &format!(
+            "#1=0\n#2=0\n#3=0.5\nWHILE[#1 LT {rounds}]DO1\n#2=#2+#3*2.0-0.25\n#3=SIN[#1*0.1]+1.5\n#1=#1+1\nEND1\n"
+        ),
+        &format!(
+            "#1=0\n#2=0\n#3=0.5\no100 while [#1 LT {rounds}]\n#2=[#2 + #3*2.0 - 0.25]\n#3=[SIN[#1*0.1]+1.5]\n#1=[#1+1]\no100 endwhile\n"
+        ),
+    )?;
+    computing.end()?;
+    let mut moving = Pair::create(folder, "loop-moves")?;
+    moving.line(
+        &format!(
+            "#1=0\nWHILE[#1 LT {rounds}]DO1\n#2=20+SIN[#1*0.36]\nG1 X[#2*2] Z[0-#1*0.0001]\n#1=#1+1\nEND1\n"
+        ),
+        &format!(
+            "#1=0\no100 while [#1 LT {rounds}]\n#2=[20+SIN[#1*0.36]]\nG1 X#2 Z[0-#1*0.0001]\n#1=[#1+1]\no100 endwhile\n"
+        ),
+    )?;
+    moving.end()
+}
+
+/// Lines of the program that jumps about.
+const JUMP_LINES: u64 = 100_000;
+
+/// As many jumps to computed places all over a long program; only ours, the other dialect has no such jump.
+fn jumps(folder: &Path, jumps: u64) -> Result<(), String> {
+    let path = folder.join("jumps.nc");
+    let fault = |error: std::io::Error| format!("{}: {error}", path.display());
+    let mut file = BufWriter::new(File::create(&path).map_err(fault)?);
+    let head = format!(
+        "%\nO3000\n#1=0\n#2=7\nN1 #1=#1+1\nIF[#1 GT {}]GOTO99999\n#2=#2*7919+13\n#2=#2-FIX[#2/99000]*99000\nGOTO[#2+10]\n",
+        jumps / 2
+    );
+    file.write_all(head.as_bytes()).map_err(fault)?;
+    for line in 10..JUMP_LINES - 5 {
+        writeln!(file, "N{line} GOTO1").map_err(fault)?;
+    }
+    file.write_all(b"N99999 M30\n%\n").and_then(|()| file.flush()).map_err(fault)
 }
 
 /// A long straight-line program; `numbered` adds N and F to every block.

@@ -1,7 +1,8 @@
 //! Speed and memory, measured: reading, interpreting, listing, and the same motion in LinuxCNC's interpreter.
 //!
 //! `cargo run --release -p turnwright-benches -- compare` makes the programs, runs both sides in turn and prints
-//! ratios (goals: P1 G1 blocks, P3 numbered blocks, P4 arcs, P8 listing, S1 memory, S2 growth). `rs274` is run
+//! ratios (goals: P1 G1 blocks, P3 numbered blocks, P4 arcs, P5 and P6 macro loops, P8 listing,
+//! S1 memory, S2 growth, S3 jumps). `rs274` is run
 //! as a separate program when it is installed; without it only our own figures are printed.
 //! `generate DIR [BLOCKS]`, `lex FILE`, `tree FILE`, `interpret FILE`, `listing FILE` do single steps.
 
