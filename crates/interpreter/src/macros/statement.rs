@@ -187,12 +187,12 @@ impl Core {
                     return Ok(self.leave_loop(environment)?);
                 }
                 if self.cache.current.is_none() {
-                    self.check_loop(statement, environment)?;
+                    self.check_loop(*statement, environment)?;
                 }
             }
             // A kept one was checked when it was kept.
             Statement::Do if self.cache.current.is_some() => {}
-            Statement::Do => self.check_loop(statement, environment)?,
+            Statement::Do => self.check_loop(*statement, environment)?,
             Statement::End => return Ok(self.repeat_loop(environment)?),
             Statement::Output { start, end } => self.output(start..end, environment)?,
         }
