@@ -441,6 +441,7 @@ impl Core {
 
     /// Goes to the first block of a program, which holds its number.
     pub(crate) fn enter(&mut self, target: Program, environment: &mut dyn Environment) -> Result<(), Alarm> {
+        self.count_idle(crate::limits::IDLE_CALLS)?;
         self.program = target.number;
         self.program_start = target.start;
         self.expects_program_number = true;

@@ -7,8 +7,14 @@ pub const BLOCKS_MAX: u64 = 30_000_000;
 /// for [`IDLE_READ_BLOCKS`].
 pub const IDLE_BLOCKS_MAX: u64 = 16_000_000;
 
-/// What a block of a loop that is not kept counts for, against the limit above.
+/// What a block of a loop that is not kept counts for, against the limit above: as much as it takes.
 pub const IDLE_READ_BLOCKS: u64 = 10;
+
+/// What a kept block of words counts for beyond itself.
+pub const IDLE_WORD_BLOCKS: u64 = 3;
+
+/// What a call counts for beyond its block.
+pub const IDLE_CALLS: u64 = 20;
 
 /// Memory for blocks that are kept because they run again; beyond it they are read anew.
 pub const CACHE_BYTES_MAX: usize = 16 * 1024 * 1024;

@@ -10,6 +10,7 @@ use turnwright_syntax::{Block, ExtentKind, scan_block};
 use crate::Environment;
 use crate::cache::{BlockId, Kept};
 use crate::index::Resume;
+use crate::limits;
 use crate::machine::{BlockPlace, Core, Halt};
 use crate::report::Alarm;
 use crate::text::Cursor;
@@ -138,6 +139,7 @@ impl Core {
             Kept::Blank => self.go_on(environment)?,
             Kept::Words { first, count, computes } => {
                 self.cache.refill(block, first, count);
+                self.count_idle(limits::IDLE_WORD_BLOCKS)?;
                 if computes {
                     self.macros.word_values.clear();
                     block.resolve(|word, place| {
@@ -169,7 +171,7 @@ impl Core {
 
     /// Counts a block of a loop; commands given out start the count anew.
     #[inline]
-    fn count_idle(&mut self, weight: u64) -> Result<(), Alarm> {
+    pub(crate) fn count_idle(&mut self, weight: u64) -> Result<(), Alarm> {
         self.idle_blocks += weight;
         if self.idle_blocks <= self.options.idle_blocks_max { Ok(()) } else { Err(self.idles_too_long()) }
     }
@@ -230,7 +232,7 @@ impl Core {
             (self.at.first_byte, self.at.last_byte) = (start, end);
         }
         if is_hot {
-            self.count_idle(crate::limits::IDLE_READ_BLOCKS)?;
+            self.count_idle(limits::IDLE_READ_BLOCKS)?;
             if let Some(id) = self.keep(block, environment)? {
                 return Ok(Read::Kept(id));
             }
