@@ -41,6 +41,9 @@ impl Role {
 const POWER: [i64; 10] =
     [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000];
 
+/// Numbers with fewer digits than this are short enough and small enough for every control.
+const FINE_DIGITS_MAX: u64 = 100_000_000;
+
 impl Core {
     /// The number of a word.
     #[inline]
@@ -64,6 +67,21 @@ impl Core {
             if nm.abs() < self.settings.length_limit_nm {
                 return Ok(Length::from_nm(nm));
             }
+        }
+        // Programs of CAM systems: a digit or two more.
+        if !counts
+            && !self.modal.is_inch
+            && number.scale <= 6
+            && number.digits.unsigned_abs() < FINE_DIGITS_MAX
+        {
+            let nm = number.digits * POWER[usize::from(6 - number.scale)];
+            let increment = self.settings.metric_increment.nm();
+            let half = match self.control.policies.fine_digits {
+                FineDigits::Cut => 0,
+                FineDigits::Round if nm < 0 => -increment / 2,
+                FineDigits::Round => increment / 2,
+            };
+            return Ok(Length::from_nm((nm + half) / increment * increment));
         }
         if number.is_computed() && !self.modal.is_inch && number.scale == 9 {
             // Nanometres in an increment, and the thousandths of them that computed values are held to.
