@@ -81,7 +81,10 @@ impl Core {
                 FineDigits::Round if nm < 0 => -increment / 2,
                 FineDigits::Round => increment / 2,
             };
-            return Ok(Length::from_nm((nm + half) / increment * increment));
+            let nm = (nm + half) / increment * increment;
+            if nm.abs() < self.settings.length_limit_nm {
+                return Ok(Length::from_nm(nm));
+            }
         }
         if number.is_computed() && !self.modal.is_inch && number.scale == 9 {
             // Nanometres in an increment, and the thousandths of them that computed values are held to.
