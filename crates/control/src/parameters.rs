@@ -216,6 +216,7 @@ impl Parameters {
             "count" | "tenth-lead" | "rpm" | "percent" if parsed < 0.0 || parsed.fract() != 0.0 => {
                 return Err(fault("a whole number, not negative"));
             }
+            "signed count" if parsed.fract() != 0.0 => return Err(fault("a whole number")),
             _ if parsed.is_finite() && parsed.abs() < 1e9 => parsed,
             _ => return Err(fault("a number in range")),
         };

@@ -82,12 +82,18 @@ impl Core {
         };
         let words = &block.words;
         let repeats_speed = |word: &Word| word.address == b'S' && !word.comma;
-        if self.control.policies.repeated_speed_word == RepeatedSpeedWord::Alarm
+        let is_call = words.iter().any(|word| word.address == b'G' && self.calls_macro(word));
+        if !is_call
+            && self.control.policies.repeated_speed_word == RepeatedSpeedWord::Alarm
             && let Some(again) = words.iter().filter(|word| repeats_speed(word)).nth(1)
         {
             return Err(self.alarm("too-many-spindle-words", again));
         }
         for (place, first) in words.iter().enumerate() {
+            if is_call && matches!(first.address, b'I' | b'J' | b'K') {
+                // Each further one is another argument.
+                continue;
+            }
             let Some(again) = words[place + 1..].iter().find(|word| same(first, word)) else { continue };
             if self.settings.duplicate_word_alarm
                 || self.control.policies.repeated_address == RepeatedAddress::Alarm

@@ -80,6 +80,70 @@ fn with_and_without_a_subprogram() {
     assert_eq!(moves(whole, &tf()), moves(&counted, &tf()));
 }
 
+/// The part of `with_and_without_a_subprogram`, block by block.
+const STEPS: &str =
+    "O1\nG98 M3 S800\nG0 X50. Z2.\nG1 W-5. F100.\nU2.\nG1 W-5. F100.\nU2.\nG1 W-5. F100.\nU2.\nM30\n";
+
+#[test]
+fn variables_for_coordinates() {
+    // The variable whose number #2 holds is #2 itself.
+    let variables = "O1\n#1=50\n#2=2\n#3=-5\n#100=#2\nG98 M3 S[400*#2]\nG0 X#1 Z#2\nG1 W#3 F[#1*#2]\nU#100\n\
+                     G1 W[#2-7] F100.\nU[#1/25]\nG1 W-[ABS[#3]] F100.\nU##2\nM30\n";
+    for control in ["fanuc-0i-mate-tb", "fanuc-0i-td", "gsk-980tdi", "gsk-988ta"] {
+        assert_eq!(
+            moves(STEPS, &Conditions::on(control)),
+            moves(variables, &Conditions::on(control)),
+            "{control}"
+        );
+    }
+}
+
+#[test]
+fn loops_for_repeated_blocks() {
+    let head = "O1\nG98 M3 S800\nG0 X50. Z2.\n#1=0\n";
+    let body = "G1 W-5. F100.\nU2.\n#1=#1+1\n";
+    let loops = [
+        format!("{head}WHILE[#1 LT 3]DO1\n{body}END1\nM30\n"),
+        format!("{head}DO2\n{body}IF[#1 EQ 3]GOTO 9\nEND2\nN9 M30\n"),
+        format!("{head}N5 {body}IF[#1 NE 3]GOTO 5\nM30\n"),
+        format!("{head}GOTO 7\nN6 M30\nN7 {body}IF[#1 GE 3]GOTO 6\nGOTO 7\n"),
+    ];
+    for control in ["fanuc-0i-mate-tb", "fanuc-0i-tf", "gsk-980tdi", "gsk-988tb"] {
+        for text in &loops {
+            assert_eq!(
+                moves(STEPS, &Conditions::on(control)),
+                moves(text, &Conditions::on(control)),
+                "{text}"
+            );
+        }
+    }
+    let old = format!("{head}N5 {body}G65 H84 P5 Q#1 R3\nM30\n");
+    let gsk = Conditions::on("gsk-980tdi");
+    assert_eq!(moves(STEPS, &gsk), moves(&old, &gsk));
+}
+
+#[test]
+fn macros_for_repeated_blocks() {
+    let head = "O1\nG98 M3 S800\nG0 X50. Z2.\n";
+    let step = "O9100\nG1 W-#23 F#9\nU#21\nM99\n";
+    let calls = [
+        format!("{head}G65 P9100 L3 W5. U2. F100.\nM30\n{step}"),
+        format!("{head}#1=9100\nG65 P#1 W5. U2. F100.\nG65 P#1 L2 W5. U[1+1] F[50*2]\nM30\n{step}"),
+        format!("{head}G66 P9101 U2.\nG1 W-5. F100.\nW-5.\nW-5.\nG67\nM30\nO9101\nG1 U#21\nM99\n"),
+    ];
+    for control in ["fanuc-0i-tc", "fanuc-0i-tf", "gsk-980tdi", "gsk-988ta"] {
+        for text in &calls {
+            assert_eq!(
+                moves(STEPS, &Conditions::on(control)),
+                moves(text, &Conditions::on(control)),
+                "{text}"
+            );
+        }
+    }
+    let by_code = format!("{head}G100 L3 W5. U2. F100.\nM30\n{}", step.replace("9100", "9010"));
+    assert_eq!(moves(STEPS, &tf()), moves(&by_code, &tf().with("6050", "100")));
+}
+
 #[test]
 fn inch_and_millimetre_lengths_that_are_equal() {
     // 25.4 mm is 1 inch: every length here is exact in both.

@@ -206,16 +206,18 @@ impl Core {
             if word.start < call.start && !matches!(word.address, b'N' | b'O') {
                 return Err(self.alarm("macro-and-nc-mixed", word));
             }
-            if word.start > call.start && word.address == b'G' && self.is_call_code(word) {
+            if word.start > call.start && word.address == b'G' && self.calls_macro(word) {
                 return Err(self.alarm("two-macro-calls", word));
             }
         }
         Ok(())
     }
 
-    fn is_call_code(&self, word: &Word) -> bool {
-        let function = self.code(word).ok().and_then(|code| self.dispatch.function(code));
-        function.is_some_and(|id| id.get().is_call())
+    /// Whether a G word hands the words behind it to a macro.
+    pub(crate) fn calls_macro(&self, word: &Word) -> bool {
+        let Ok(code) = self.code(word) else { return false };
+        let by_parameter = self.macros.calls.preparatory(code).is_some() && !self.is_called_by_code();
+        by_parameter || self.dispatch.function(code).is_some_and(|id| id.get().is_call())
     }
 
     /// A code that a parameter turns into a call, with the other words as arguments.
