@@ -568,9 +568,7 @@ fn reads_like_a_block(text: &[u8]) -> bool {
     let mut scanner = Scanner { line: text, at: 0, block: &mut block, single: true };
     scanner.run();
     !block.is_empty()
-        && block.macro_statement.is_none_or(|(start, end)| {
-            text[start as usize] == b'#' && crate::parse_statement(text, start..end).is_ok()
-        })
+        && block.macro_statement.is_none_or(|(start, end)| crate::parse_statement(text, start..end).is_ok())
         && block.faults.iter().all(|fault| fault.kind.is_harmless())
 }
 

@@ -62,6 +62,9 @@ impl Core {
         let number_of = whole_number(variable);
         if let Some(inner) = number_of.and_then(|number| self.indirect(number)) {
             let held = number(self.read_variable(inner, environment)?);
+            if self.is_indirect(held) {
+                return Err(self.variable_alarm("variable-number-illegal").into());
+            }
             return self.read_variable(held, environment);
         }
         match number_of.map(|number| self.read_system(number, environment)) {
@@ -75,6 +78,11 @@ impl Core {
     fn indirect(&self, variable: u32) -> Option<f64> {
         let is_on = self.control.policies.nine_thousand_variables == NineThousandVariables::Indirect;
         (is_on && (9_100..=9_999).contains(&variable)).then(|| f64::from(variable - 9_000))
+    }
+
+    /// Whether a number that such a variable holds is that of another one: it could lead round in a circle.
+    fn is_indirect(&self, held: f64) -> bool {
+        whole_number(held).is_some_and(|held| self.indirect(held).is_some())
     }
 
     fn variable_alarm(&self, key: &'static str) -> Alarm {
@@ -278,6 +286,9 @@ impl Core {
         }
         if let Some(inner) = self.indirect(variable) {
             let held = number(self.read_variable(inner, environment)?);
+            if self.is_indirect(held) {
+                return Err(alarm(self, "variable-number-illegal"));
+            }
             return self.write_variable(held, value, place, environment);
         }
         match self.write_system(variable, number(value), environment)? {
