@@ -14,7 +14,7 @@ pub const IDLE_READ_BLOCKS: u64 = 10;
 pub const IDLE_WORD_BLOCKS: u64 = 3;
 
 /// What a call counts for beyond its block.
-pub const IDLE_CALLS: u64 = 20;
+pub const IDLE_CALLS: u64 = 60;
 
 /// Memory for blocks that are kept because they run again; beyond it they are read anew.
 pub const CACHE_BYTES_MAX: usize = 16 * 1024 * 1024;
