@@ -16,7 +16,7 @@ fn interpreter(control: &str, parameters: &[(&str, &str)]) -> Interpreter {
 }
 
 fn run(interpreter: &mut Interpreter, text: &str) {
-    let mut environment = Memory { text: text.as_bytes(), skips: &[], setup: None };
+    let mut environment = Memory { text: text.as_bytes(), skips: &[], setup: None, bytes_at_once: 0 };
     loop {
         match interpreter.step(&mut environment) {
             Step::End => return,

@@ -19,7 +19,7 @@ fn interpreter(control: &str, parameters: &[(&str, &str)], setup: &str) -> Inter
 
 /// At most `steps_max` steps; the commands given, and whether the program came to its end.
 fn go(interpreter: &mut Interpreter, text: &str, steps_max: usize) -> (Vec<Command>, bool) {
-    let mut environment = Memory { text: text.as_bytes(), skips: &[], setup: None };
+    let mut environment = Memory { text: text.as_bytes(), skips: &[], setup: None, bytes_at_once: 0 };
     let mut commands = Vec::new();
     for _ in 0..steps_max {
         match interpreter.step(&mut environment) {
@@ -61,7 +61,8 @@ fn reset_at_any_moment_starts_the_program_anew() {
 #[test]
 fn an_alarm_is_over_with_a_reset() {
     let mut machine = interpreter("fanuc-0i-tf", &[], "");
-    let mut broken = Memory { text: b"O1\nG00 X20. Z2.\nG01 X Z1.\nM30\n", skips: &[], setup: None };
+    let mut broken =
+        Memory { text: b"O1\nG00 X20. Z2.\nG01 X Z1.\nM30\n", skips: &[], setup: None, bytes_at_once: 0 };
     while !matches!(machine.step(&mut broken), Step::Alarm(_)) {}
     assert_eq!(machine.step(&mut broken), Step::End);
     machine.reset();

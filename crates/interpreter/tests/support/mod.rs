@@ -14,12 +14,15 @@ pub struct Memory<'a> {
     pub text: &'a [u8],
     pub skips: &'a [u8],
     pub setup: Option<&'a Setup>,
+    /// Most bytes given at once; 0 is as many as are asked for.
+    pub bytes_at_once: usize,
 }
 
 impl Environment for Memory<'_> {
     fn read(&mut self, _: SourceId, offset: u64, buffer: &mut [u8]) -> Result<usize, ReadFault> {
         let rest = self.text.get(offset as usize..).unwrap_or(&[]);
-        let length = rest.len().min(buffer.len());
+        let most = if self.bytes_at_once == 0 { usize::MAX } else { self.bytes_at_once };
+        let length = rest.len().min(buffer.len()).min(most);
         buffer[..length].copy_from_slice(&rest[..length]);
         Ok(length)
     }
@@ -54,6 +57,10 @@ pub struct Conditions {
     pub machine: Option<String>,
     /// Cycle starts after the end of the program.
     pub restarts: u32,
+    /// Most bytes of the text that are read at once; 0 is as many as are asked for.
+    pub bytes_at_once: usize,
+    /// Blocks executed at most; 0 is the bound of all tests.
+    pub blocks_max: u64,
 }
 
 impl Conditions {
@@ -82,11 +89,17 @@ pub fn run_on(mut control: Control, text: &[u8], conditions: &Conditions) -> Run
     for (number, value) in setup.parameter_words().iter().chain(&conditions.parameters) {
         control.parameters.set(number, value).unwrap_or_else(|fault| panic!("{fault:?}"));
     }
-    let options = Options { blocks_max: 200_000, idle_blocks_max: 200_000 };
+    let blocks_max = if conditions.blocks_max == 0 { 200_000 } else { conditions.blocks_max };
+    let options = Options { blocks_max, idle_blocks_max: blocks_max };
     let mut interpreter = Interpreter::new(control.clone(), &setup, SourceId(0), options)
         .unwrap_or_else(|fault| panic!("{fault:?}"));
     let decimals = interpreter.decimals();
-    let mut environment = Memory { text, skips: &conditions.skips, setup: Some(&setup) };
+    let mut environment = Memory {
+        text,
+        skips: &conditions.skips,
+        setup: Some(&setup),
+        bytes_at_once: conditions.bytes_at_once,
+    };
     let mut run = Run { commands: Vec::new(), alarm: None, warnings: Vec::new(), control, decimals };
     let mut restarts = conditions.restarts;
     loop {
