@@ -19,11 +19,11 @@ use policy::{AlarmIds, Limits, Policies};
 use serde::Deserialize;
 
 pub use functions::{CodeSystem, FunctionEntry, Functions, Group, parse_code};
-pub use messages::{Language, MessageText, Messages};
+pub use messages::{Language, MessageText, Messages, RaisedBy};
 pub use parameter_text::{
     ParameterExport, ParameterImport, ParameterLine, export_parameters, import_parameters,
 };
-pub use parameters::{Axis, Parameter, ParameterFault, Parameters, UnderNumber};
+pub use parameters::{Acts, Axis, Parameter, ParameterFault, Parameters, UnderNumber};
 pub use setup::{
     AxisPair, LinearAxis, Machine, MachineAxes, Offset, OffsetRow, RotaryAxis, Setup, SetupFault,
     machine_names,

@@ -40,10 +40,47 @@ struct Ids {
     own: Option<String>,
 }
 
+/// What raises a diagnostic that no program in the fixtures can raise; the head of `data/alarms.toml` tells more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RaisedBy {
+    /// Editing, searching, MDI and manual work at the panel.
+    Operator,
+    /// Drives, signals and the machine's own logic.
+    Device,
+    /// Files, options and setups of the command line.
+    CommandLine,
+    /// A guard against huge texts, or against a fault of our own.
+    Limit,
+    /// A reading of a policy that no control has as delivered.
+    Policy,
+    /// It stands beside another diagnostic and names a second place.
+    Note,
+    /// An option that none of the machines has.
+    Option,
+    /// A function that is refused by name.
+    OutsideScope,
+    /// Comes with nose compensation.
+    NoseCompensation,
+    /// Comes with the hole cycles and the further cycles of GSK.
+    Cycles,
+    /// Comes with the checks of a whole program.
+    Checks,
+}
+
+impl RaisedBy {
+    /// Whether the code raises it today.
+    pub const fn is_raised(self) -> bool {
+        matches!(self, Self::CommandLine | Self::Limit | Self::Policy | Self::Note)
+    }
+}
+
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 struct Entry {
     ids: Ids,
+    #[serde(default)]
+    raised_by: Option<RaisedBy>,
     en: MessageText,
     zh: MessageText,
 }
@@ -91,10 +128,20 @@ impl Messages {
         })
     }
 
+    /// The number of ours that stands where a control has none.
+    pub fn own_id(&self, key: &str) -> Option<&str> {
+        self.entries.get(key)?.ids.own.as_deref()
+    }
+
+    /// What raises it, when that is no program of the fixtures.
+    pub fn raised_by(&self, key: &str) -> Option<RaisedBy> {
+        self.entries.get(key)?.raised_by
+    }
+
     /// Keys that a number names on a control (several conditions may share one number).
     pub fn by_id(&self, number: &str, ids: AlarmIds) -> Vec<&str> {
-        let wanted = plain_id(number);
-        self.keys().filter(|key| self.id(key, ids).is_some_and(|id| plain_id(id) == wanted)).collect()
+        let wanted = number.trim().to_ascii_uppercase();
+        self.keys().filter(|key| self.id(key, ids).is_some_and(|id| is_same_id(id, &wanted))).collect()
     }
 
     /// A diagnostic in words, with its arguments put in.
@@ -107,6 +154,9 @@ impl Messages {
         MessageText { message: fill(&raw.message), cause: fill(&raw.cause), remedy: fill(&raw.remedy) }
     }
 
+    /// The key of the alarm that programs raise themselves, with numbers of their own.
+    pub const OF_PROGRAM: &str = "macro-user-alarm";
+
     /// The words behind a key, arguments still in braces.
     pub fn raw(&self, key: &str, language: Language) -> Option<&MessageText> {
         let entry = self.entries.get(key)?;
@@ -117,11 +167,25 @@ impl Messages {
     }
 }
 
-/// `PS0010`, `ps10` and `0010` are one number.
-fn plain_id(id: &str) -> String {
-    let upper = id.trim().to_ascii_uppercase();
-    let digits = upper.strip_prefix("PS").unwrap_or(&upper).trim_start_matches('0');
-    digits.to_string()
+/// Letters that controls set before a number: the class of the alarm.
+const CLASSES: [&str; 8] = ["PS", "OT", "OH", "SV", "SP", "SW", "PW", "MC"];
+
+/// Class and number: `PS0010` is PS and 10. What is no such number is its own class.
+fn class_and_number(id: &str) -> (&str, &str) {
+    let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+    let plain = |text| if text == "" || !digits(text) { None } else { Some(text.trim_start_matches('0')) };
+    let class = CLASSES.into_iter().find(|class| id.starts_with(class)).unwrap_or("");
+    match plain(&id[class.len()..]) {
+        Some(number) => (&id[..class.len()], number),
+        None => (id, ""),
+    }
+}
+
+/// `PS0010`, `ps10` and `0010` are one number; OT0500 and PS0500 are two.
+fn is_same_id(id: &str, asked: &str) -> bool {
+    let ((class, number), (wanted_class, wanted)) = (class_and_number(id), class_and_number(asked));
+    number == wanted
+        && (class == wanted_class || (!number.is_empty() && (class.is_empty() || wanted_class.is_empty())))
 }
 
 fn fill(text: &str, arguments: &[(&'static str, Argument)], language: Language) -> String {

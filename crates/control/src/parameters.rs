@@ -1,6 +1,6 @@
 //! Parameters: named by meaning, numbered by control.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
 use serde::Deserialize;
@@ -36,6 +36,18 @@ struct Texts {
     effect: String,
 }
 
+/// Why a parameter changes no run here; the head of `data/parameters.toml` tells more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Acts {
+    /// Only the moving machine shows it.
+    Live,
+    /// Once nose compensation is executed.
+    NoseCompensation,
+    /// Once the hole cycles and the further words of the multiple cycles are executed.
+    Cycles,
+}
+
 /// A parameter as `data/parameters.toml` has it.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
@@ -50,6 +62,8 @@ pub struct Parameter {
     #[serde(default)]
     #[expect(dead_code, reason = "kept in the data for readers")]
     certainty: Option<String>,
+    #[serde(default)]
+    acts: Option<Acts>,
     en: Texts,
     zh: Texts,
 }
@@ -71,6 +85,11 @@ impl Parameter {
     /// Whether each axis has its own value.
     pub const fn is_per_axis(&self) -> bool {
         self.per_axis
+    }
+
+    /// When it acts, if it changes no run here today.
+    pub const fn acts(&self) -> Option<Acts> {
+        self.acts
     }
 
     /// What it changes, in a language.
@@ -136,6 +155,8 @@ pub struct Parameters {
     map: String,
     /// A parameter that does not go by axes has its value in the first place.
     values: BTreeMap<String, [f64; Axis::ALL.len()]>,
+    /// Names of those that were set, to whatever value.
+    stated: BTreeSet<String>,
 }
 
 /// The table; read when it is first asked for.
@@ -161,7 +182,7 @@ impl Parameters {
                 _ => return Err(format!("parameter {name} is unknown or has no number")),
             }
         }
-        Ok(Self { map: map.to_string(), values })
+        Ok(Self { map: map.to_string(), values, stated: BTreeSet::new() })
     }
 
     /// The value of a parameter by name; bits are 0 and 1.
@@ -178,6 +199,11 @@ impl Parameters {
     /// A bit by name.
     pub fn bit(&self, name: &str) -> bool {
         self.value(name) != 0.0
+    }
+
+    /// Whether somebody set it, to whatever value.
+    pub fn is_stated(&self, name: &str) -> bool {
+        self.stated.contains(name)
     }
 
     /// Sets a parameter by the number that the control gives it: `3401#0`, `5130`, `051`. Behind the number of a
@@ -220,6 +246,7 @@ impl Parameters {
             _ if parsed.is_finite() && parsed.abs() < 1e9 => parsed,
             _ => return Err(fault("a number in range")),
         };
+        self.stated.insert(name.clone());
         if let Some(values) = self.values.get_mut(name) {
             match axis {
                 Some(axis) => values[axis as usize] = parsed,

@@ -633,6 +633,8 @@ pub enum AlarmIds {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Limits {
+    /// Axes that a cut moves together. From memory; options of some machines allow more.
+    pub simultaneous_axes_max: u8,
     /// Digits of a length.
     pub number_digits: u8,
     /// Digits of a sequence number.

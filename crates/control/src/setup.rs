@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use crate::signal::Signal;
-use crate::{Parameters, embedded, nearest};
+use crate::{Axis, Parameters, embedded, nearest};
 
 /// A pair of axis values in millimetres; X as a diameter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
@@ -274,13 +274,26 @@ pub fn machine_names() -> impl Iterator<Item = &'static str> {
 }
 
 impl Machine {
-    /// The machine as the control's parameters limit it: cutting feed, spindle speed, and the lowest speed of
-    /// constant surface speed. A parameter of 0 leaves the machine's own value.
+    /// The machine as the control's parameters limit it: rapid traverse, cutting feed, spindle speed, and the lowest
+    /// speed of constant surface speed. A parameter of 0 leaves the machine's own value.
     #[must_use]
     pub fn limited_by(mut self, parameters: &Parameters) -> Self {
         let set = |name| Some(parameters.value(name)).filter(|value| *value > 0.0);
+        let of_axis = |name, axis| Some(parameters.axis_value(name, axis)).filter(|value: &f64| *value > 0.0);
+        if let Some(rate) = of_axis("rapid-rate", Axis::X) {
+            self.rapid_x_mm_per_min = rate;
+        }
+        if let Some(rate) = of_axis("rapid-rate", Axis::Z) {
+            self.rapid_z_mm_per_min = rate;
+        }
         if let Some(feed) = set("cutting-feed-maximum") {
             self.cutting_max_mm_per_min = feed;
+        }
+        // Along a path the faster axis counts: a feed above its limit is surely held down.
+        let fastest = |name| Axis::ALL.into_iter().filter_map(|axis| of_axis(name, axis)).reduce(f64::max);
+        if let Some(feed) = fastest("cutting-feed-maximum-axis") {
+            let of_all = set("cutting-feed-maximum").unwrap_or(f64::INFINITY);
+            self.cutting_max_mm_per_min = feed.min(of_all);
         }
         if let Some(rpm) = set("spindle-maximum-rpm") {
             self.rpm_max = rpm as u32;

@@ -290,6 +290,7 @@ impl Core {
         if to == self.modal.position && self.axes.stay(&ends) {
             return Ok(());
         }
+        self.refuse_too_many_axes(call.block, to, &ends)?;
         let Some(feed) = self.feed_in_force() else {
             return Err(self.alarm_at("feed-missing", call.word));
         };
@@ -306,6 +307,29 @@ impl Core {
         self.modal.position = to;
         let others = self.take_along(to, &Shape::Line, ends);
         self.emit_move(to, Action::Rapid { to, path, others })
+    }
+
+    /// A cut leads only so many axes together.
+    fn refuse_too_many_axes(
+        &self,
+        block: &Block,
+        to: Position<WorkTip>,
+        ends: &OtherAxes,
+    ) -> Result<(), Alarm> {
+        let from = self.modal.position;
+        let moving = [
+            to.x != from.x,
+            to.z != from.z,
+            ends.c.is_some() || ends.v.is_some(),
+            ends.y.is_some(),
+            ends.b.is_some(),
+        ];
+        let count = moving.into_iter().filter(|moves| *moves).count();
+        if count <= usize::from(self.control.limits.simultaneous_axes_max) {
+            return Ok(());
+        }
+        let last = block.words.iter().rfind(|word| b"XZUWCHYVB".contains(&word.address));
+        Err(self.alarm_at("too-many-axes", last))
     }
 
     fn refuse_words_of_corners(&mut self, block: &Block) -> Result<(), Alarm> {

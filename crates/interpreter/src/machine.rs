@@ -227,7 +227,8 @@ impl Interpreter {
         }
         let dispatch = Dispatch::new(&control);
         let macros = Macros::new(&control);
-        let machine = setup.machine()?;
+        let machine = setup.machine()?.limited_by(&control.parameters);
+        let machine_limits = MachineLimits::new(&machine);
         let strokes = Strokes::new(&control.parameters);
         let zeros = Zeros::new(&control, setup, &machine)?;
         let mut axes =
@@ -260,7 +261,6 @@ impl Interpreter {
             stroke_two_is_on: settings.stroke_two_at_power_on,
             in_force: InForce::new(dispatch.codes_at_power_on),
         };
-        let machine_limits = MachineLimits::new(&setup.machine()?.limited_by(&control.parameters));
         let parts = Parts::new(&control.parameters);
         let start = Cursor { source, offset: 0, line: 1 };
         let mut core = Core {

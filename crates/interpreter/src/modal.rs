@@ -1,7 +1,7 @@
 //! The modal state: everything that stays in force from block to block.
 
 use turnwright_canon::{PathMode, SpindleState};
-use turnwright_control::Parameters;
+use turnwright_control::{Axis, Parameters};
 use turnwright_units::{LeastIncrement, Length, Position, Radius, Rpm, SurfaceSpeed, WorkTip};
 
 use crate::axes::Plane;
@@ -96,6 +96,8 @@ pub(crate) struct Settings {
     /// Lengths reach to this, metric.
     pub(crate) length_limit_nm: i64,
     pub(crate) is_calculator: bool,
+    /// X and U are radii.
+    pub(crate) x_is_radius: bool,
     pub(crate) cycle_words_in_mm: bool,
     pub(crate) linear_rapid: bool,
     pub(crate) plane_at_power_on: Plane,
@@ -151,6 +153,8 @@ pub(crate) struct Settings {
     pub(crate) dwell_in_revolutions: bool,
     /// The fastest that the long axis of a thread may be, when that is limited.
     pub(crate) thread_feed_max_mm_per_min: Option<f64>,
+    /// The largest cutting feed was set to zero by hand.
+    pub(crate) cutting_feed_is_barred: bool,
     pub(crate) thread_speed_check_off: bool,
     /// Speed of leaving a thread, mm per minute; `None` is rapid traverse.
     pub(crate) thread_pull_out_feed: Option<Length>,
@@ -218,6 +222,7 @@ impl Settings {
             metric_decimals: metric_increment.metric_decimals(),
             length_limit_nm: 10i64.pow(u32::from(digits.min(9))) * metric_increment.nm(),
             is_calculator: always_calculator || bit("decimal-point-input"),
+            x_is_radius: !bit("diameter-programming"),
             cycle_words_in_mm: bit("cycle-words-in-millimetres"),
             linear_rapid: bit("linear-rapid"),
             plane_at_power_on: match (bit("turning-plane-at-power-on"), bit("plane-yz-at-power-on")) {
@@ -278,9 +283,12 @@ impl Settings {
             dwell_in_revolutions: bit("dwell-in-revolutions"),
             thread_feed_max_mm_per_min: ["cutting-feed-maximum", "cutting-feed-maximum-axis"]
                 .into_iter()
-                .map(|name| parameters.value(name))
+                .map(|name| parameters.axis_value(name, Axis::Z))
                 .filter(|limit| *limit > 0.0)
                 .reduce(f64::min),
+            cutting_feed_is_barred: parameters.is_stated("cutting-feed-maximum")
+                && parameters.value("cutting-feed-maximum") == 0.0
+                && Axis::ALL.map(|axis| parameters.axis_value("cutting-feed-maximum-axis", axis)) == [0.0; 2],
             thread_speed_check_off: bit("thread-speed-check-off"),
             thread_pull_out_feed: Some(mm("thread-pull-out-feed")).filter(|feed| feed.signum() > 0),
             run_out_tenths: count("thread-run-out"),

@@ -16,6 +16,7 @@ impl Core {
     pub(crate) fn look_at_moves(&mut self) {
         self.looks_at_moves = self.transform.is_on()
             || self.strokes.is_armed(self.modal.stroke_two_is_on)
+            || self.settings.cutting_feed_is_barred
             || self.lacks_reference();
     }
 
@@ -29,6 +30,11 @@ impl Core {
     pub(crate) fn looked_at(&self, from: Position<WorkTip>, action: Action) -> Result<Action, Alarm> {
         if self.lacks_reference() {
             return Err(self.alarm_block("reference-not-made"));
+        }
+        if self.settings.cutting_feed_is_barred
+            && matches!(action, Action::Feed { .. } | Action::Thread { .. })
+        {
+            return Err(self.alarm_block("cutting-feed-limit-zero"));
         }
         let action = if self.transform.is_on() {
             self.transform.action(action, self.modal.increment(&self.settings))

@@ -145,7 +145,13 @@ impl Core {
     #[inline]
     pub(crate) fn radius(&self, word: &Word, role: Role) -> Result<Radius, Alarm> {
         let length = self.length(word)?;
-        Ok(if role.is_diameter() { Diameter(length).to_radius() } else { Radius(length) })
+        let is_diameter = role.is_diameter() && !self.settings.x_is_radius;
+        Ok(if is_diameter { Diameter(length).to_radius() } else { Radius(length) })
+    }
+
+    /// The way back: a coordinate of X as programs write and read it.
+    pub(crate) fn x_value(&self, x: Radius) -> Length {
+        if self.settings.x_is_radius { x.0 } else { x.to_diameter().0 }
     }
 
     /// A length that has no sign.

@@ -9,7 +9,8 @@ use std::sync::LazyLock;
 
 use serde_json::{Value, json};
 use turnwright_control::{
-    CodeSystem, Control, DEFAULT_CONTROL, FunctionEntry, control_names, nearest, parse_code,
+    CodeSystem, Control, DEFAULT_CONTROL, FunctionEntry, Messages, RaisedBy, control_names, nearest,
+    parse_code,
 };
 use turnwright_interpreter::implemented_functions;
 
@@ -46,10 +47,7 @@ pub(crate) fn run(options: &Explain, printer: &Printer) -> Result<Status, Fault>
     let speech = printer.speech;
     let control = load_control(options.control.as_deref().unwrap_or(DEFAULT_CONTROL), "", speech)?;
     let asked = options.code.trim();
-    let mut answers = functions(asked, &control, speech);
-    answers.extend(auxiliaries(asked, speech));
-    answers.extend(alarms(asked, &control, speech));
-    answers.extend(shown_parameters(asked, &control, speech));
+    let answers = answers(asked, &control, speech);
     if answers.is_empty() {
         return Err(Fault::Usage(unknown(asked, &control, speech)));
     }
@@ -61,6 +59,15 @@ pub(crate) fn run(options: &Explain, printer: &Printer) -> Result<Status, Fault>
     out.write_all(text.as_bytes())?;
     out.flush()?;
     Ok(Status::Clean)
+}
+
+/// Every meaning of what was asked.
+fn answers(asked: &str, control: &Control, speech: Speech) -> Vec<Answer> {
+    let mut answers = functions(asked, control, speech);
+    answers.extend(auxiliaries(asked, speech));
+    answers.extend(alarms(asked, control, speech));
+    answers.extend(shown_parameters(asked, control, speech));
+    answers
 }
 
 fn human(answers: &[Answer], control: &Control, speech: Speech) -> String {
@@ -190,22 +197,62 @@ fn alarms(asked: &str, control: &Control, speech: Speech) -> Vec<Answer> {
     if messages.raw(&lower, speech.language).is_some() {
         keys = vec![lower.as_str()];
     }
+    let of_program = number_of_program(asked, control);
+    if of_program.is_some() {
+        keys.push(Messages::OF_PROGRAM);
+    }
     keys.into_iter()
         .filter_map(|key| {
             let words = messages.raw(key, speech.language)?;
+            let id = messages.id(key, control.alarm_ids).unwrap_or(key);
+            let mut paragraphs = vec![
+                ("label-cause", readable(&words.cause)),
+                ("label-cure", readable(&words.remedy)),
+                ("label-key", key.to_string()),
+            ];
+            if let Some(why) = messages.raised_by(key) {
+                paragraphs.push(("label-raised", speech.get(raised_label(why)).to_string()));
+            }
             Some(Answer {
                 kind: "alarm",
-                id: messages.id(key, control.alarm_ids).unwrap_or(key).to_string(),
+                id: match of_program {
+                    Some(number) if key == Messages::OF_PROGRAM => {
+                        id.replace("{number}", &number.to_string())
+                    }
+                    _ => id.to_string(),
+                },
                 key: key.to_string(),
-                title: readable(&words.message),
-                paragraphs: vec![
-                    ("label-cause", readable(&words.cause)),
-                    ("label-cure", readable(&words.remedy)),
-                    ("label-key", key.to_string()),
-                ],
+                title: if key == Messages::OF_PROGRAM {
+                    speech.get("alarm-of-program").to_string()
+                } else {
+                    readable(&words.message)
+                },
+                paragraphs,
             })
         })
         .collect()
+}
+
+/// The number of an alarm that programs raise themselves: `3012`, `MC3012`, `5912`.
+fn number_of_program(asked: &str, control: &Control) -> Option<u32> {
+    let number = asked.to_ascii_uppercase().trim_start_matches("MC").parse::<u32>().ok()?;
+    let limits = &control.limits;
+    (limits.user_alarm_base..=limits.user_alarm_base + limits.user_alarm_max)
+        .contains(&number)
+        .then_some(number)
+}
+
+/// The text that says when an alarm can come.
+const fn raised_label(why: RaisedBy) -> &'static str {
+    match why {
+        RaisedBy::Operator => "raised-operator",
+        RaisedBy::Device => "raised-device",
+        RaisedBy::CommandLine | RaisedBy::Limit | RaisedBy::Note => "raised-here",
+        RaisedBy::Policy | RaisedBy::Option => "raised-option",
+        RaisedBy::OutsideScope | RaisedBy::NoseCompensation | RaisedBy::Cycles | RaisedBy::Checks => {
+            "raised-later"
+        }
+    }
 }
 
 /// A message whose places are not filled: `{word}` reads as `…`.
@@ -276,12 +323,109 @@ fn unknown(asked: &str, control: &Control, speech: Speech) -> String {
 
 #[cfg(test)]
 mod tests {
+    use turnwright_control::Language;
+
     use super::*;
 
     #[test]
     fn messages_without_values_read_as_sentences() {
         assert_eq!(readable("{word}: a count, limit {limit}"), "a count, limit …");
         assert_eq!(readable("plain"), "plain");
+    }
+
+    /// Asks on a control, in both languages, and demands texts everywhere and an answer of the kind and key.
+    fn ask(asked: &str, control: &Control, kind: &str, key: &str) {
+        for language in crate::speech::BOTH {
+            let found = answers(asked, control, Speech { language });
+            let name = control.name;
+            let meant = found.iter().find(|answer| answer.kind == kind && answer.key == key);
+            let Some(meant) = meant else { panic!("{name}: {asked} is not explained as {kind} {key}") };
+            for (label, text) in &meant.paragraphs {
+                let may_be_empty = matches!(*label, "label-unit");
+                assert!(may_be_empty || !text.trim().is_empty(), "{name}: {asked}: {label}");
+                assert!(!text.contains(['{', '}']), "{name}: {asked}: {text}");
+            }
+            assert!(!meant.title.trim().is_empty() && !meant.id.is_empty(), "{name}: {asked}");
+            assert!(human(&found, control, Speech { language }).lines().count() > 1);
+        }
+    }
+
+    fn controls() -> impl Iterator<Item = Control> {
+        control_names().into_iter().map(|name| Control::load(name).expect("a control"))
+    }
+
+    #[test]
+    fn every_code_is_explained_on_every_control_that_has_it() {
+        let mut asked = 0;
+        for control in controls() {
+            for (name, entry) in turnwright_control::Functions::load().iter() {
+                let Some(code) = entry.code(code_system(&control)) else { continue };
+                if !entry.is_on(control.code_table) || entry.only_with().is_some() {
+                    continue;
+                }
+                for one in code.split('/') {
+                    // A code that a parameter gives to another function answers with that one as well.
+                    let found = answers(one, &control, Speech { language: Language::English });
+                    assert!(found.iter().any(|answer| answer.kind == "code"), "{}: {one}", control.name);
+                }
+                ask(name, &control, "code", name);
+                asked += 1;
+            }
+            for (key, entry) in AUXILIARY.iter() {
+                let code = entry.get("code").and_then(toml::Value::as_str).expect("a code");
+                ask(code.split('/').next().expect("one"), &control, "auxiliary", key);
+            }
+        }
+        assert!(asked > 500);
+    }
+
+    #[test]
+    fn every_alarm_is_explained_by_its_number_on_every_control() {
+        let messages = Messages::load();
+        for control in controls() {
+            for key in messages.keys() {
+                match messages.id(key, control.alarm_ids) {
+                    Some(id) if !id.contains('{') => {
+                        ask(id, &control, "alarm", key);
+                        ask(&id.to_ascii_lowercase(), &control, "alarm", key);
+                    }
+                    _ => ask(key, &control, "alarm", key),
+                }
+            }
+            let limits = &control.limits;
+            for number in [limits.user_alarm_base, limits.user_alarm_base + limits.user_alarm_max] {
+                ask(&number.to_string(), &control, "alarm", Messages::OF_PROGRAM);
+            }
+            assert!(number_of_program(&(limits.user_alarm_base - 1).to_string(), &control).is_none());
+        }
+        let control = Control::load("fanuc-0i-tf").expect("a control");
+        for (asked, key) in
+            [("MC3012", "macro-user-alarm"), ("OT0500", "stroke-one-plus"), ("500", "stroke-one-plus")]
+        {
+            ask(asked, &control, "alarm", key);
+        }
+        let gsk = Control::load("gsk-980tdi").expect("a control");
+        ask("5912", &gsk, "alarm", "macro-user-alarm");
+    }
+
+    #[test]
+    fn every_parameter_is_explained_by_its_number_on_every_control() {
+        let mut asked = 0;
+        for control in controls() {
+            for (number, key, parameter, _) in control.parameters.all() {
+                ask(&number, &control, "parameter", &key);
+                if parameter.is_per_axis() {
+                    // Without the axis: all of them.
+                    let whole = number.rsplit_once('.').expect("an axis").0;
+                    ask(whole, &control, "parameter", &key);
+                }
+                if let Some((word, _)) = number.split_once('#') {
+                    ask(word, &control, "parameter", &key);
+                }
+                asked += 1;
+            }
+        }
+        assert!(asked > 1000);
     }
 
     #[test]

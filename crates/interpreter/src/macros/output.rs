@@ -48,7 +48,7 @@ impl Core {
             b"SETVN" if rest.contains(&b'[') && rest.trim_ascii_end().ends_with(b"]") => Ok(()),
             b"DPRNT" | b"BPRNT" => {
                 if !self.macros.output_is_open {
-                    return Err(self.alarm_block("output-not-open").into());
+                    return Err(self.output_fault("output-not-open", range).into());
                 }
                 let is_decimal = keyword == b"DPRNT";
                 let line = self.printed(rest, at, is_decimal, environment)?;
@@ -60,10 +60,12 @@ impl Core {
     }
 
     fn print_fault(&self, place: Range<u32>) -> Alarm {
+        self.output_fault("print-format", place)
+    }
+
+    fn output_fault(&self, key: &'static str, place: Range<u32>) -> Alarm {
         let quote = self.quote(place.start, place.end);
-        self.finish(
-            Diagnostic::alarm("print-format").at(self.at.span(place.start, place.end)).with("word", quote),
-        )
+        self.finish(Diagnostic::alarm(key).at(self.at.span(place.start, place.end)).with("word", quote))
     }
 
     /// What `[…]` prints; `at` is the place of its first byte in the line.

@@ -5,7 +5,7 @@
 
 use turnwright_control::Axis as WorkAxis;
 use turnwright_control::policy::{WorkShiftVariables, WorkZeroVariables};
-use turnwright_units::{LeastIncrement, Length};
+use turnwright_units::{LeastIncrement, Length, Radius};
 
 use super::system::{Axis, Written};
 use crate::machine::Core;
@@ -118,7 +118,9 @@ impl Core {
         Some(match self.stored(variable)? {
             Stored::Offset(table, field, number) => length(self.offset_value(table, field, number).ok()?),
             Stored::Tip(number) => f64::from(self.offset_tip(number).ok()?),
-            Stored::Zero(zero, axis) => length(self.work_zero(zero, axis)?),
+            Stored::Zero(zero, axis) => {
+                length(self.work_zero(zero, axis)?) / if self.is_radius(axis) { 2.0 } else { 1.0 }
+            }
             Stored::NoZero => 0.0,
             Stored::PartsMade => f64::from(self.parts.made),
             Stored::PartsWanted => f64::from(self.parts.wanted),
@@ -147,7 +149,7 @@ impl Core {
                 Written::ReadOnly
             }
             Stored::Zero(zero, axis) => match length.filter(|length| self.is_zero_value(*length)) {
-                Some(length) => match self.set_work_zero(zero, axis, length) {
+                Some(length) => match self.set_work_zero(zero, axis, self.zero_stored(axis, length)) {
                     Some(()) => Written::Done,
                     None => Written::Unknown,
                 },
@@ -164,6 +166,15 @@ impl Core {
             }
             Stored::PartsMade | Stored::PartsWanted => Written::OutOfRange,
         })
+    }
+
+    fn is_radius(&self, axis: WorkAxis) -> bool {
+        axis == WorkAxis::X && self.settings.x_is_radius
+    }
+
+    /// Zeros are kept with X as a diameter.
+    fn zero_stored(&self, axis: WorkAxis, value: Length) -> Length {
+        if self.is_radius(axis) { Radius(value).to_diameter().0 } else { value }
     }
 
     fn is_zero_value(&self, length: Length) -> bool {

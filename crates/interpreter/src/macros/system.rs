@@ -142,7 +142,7 @@ impl Core {
                 self.wait_for_moves()?;
                 let place = self.machine_position();
                 match self.position_axis(variable - 5021) {
-                    Axis::X => place.x.to_diameter().0.to_mm() / self.unit_mm(),
+                    Axis::X => self.x_value(place.x).to_mm() / self.unit_mm(),
                     Axis::Z => place.z.to_mm() / self.unit_mm(),
                     other => self.other_place(other),
                 }
@@ -179,7 +179,7 @@ impl Core {
 
     fn work_place(&self, axis: Axis) -> f64 {
         match axis {
-            Axis::X => self.modal.position.x.to_diameter().0.to_mm() / self.unit_mm(),
+            Axis::X => self.x_value(self.modal.position.x).to_mm() / self.unit_mm(),
             Axis::Z => self.modal.position.z.to_mm() / self.unit_mm(),
             other => self.other_place(other),
         }
@@ -189,7 +189,7 @@ impl Core {
     fn skip_place_of(&self, axis: Axis) -> f64 {
         let place = self.skip_position();
         match axis {
-            Axis::X => place.x.to_diameter().0.to_mm() / self.unit_mm(),
+            Axis::X => self.x_value(place.x).to_mm() / self.unit_mm(),
             Axis::Z => place.z.to_mm() / self.unit_mm(),
             other => self.other_place(other),
         }
