@@ -170,22 +170,20 @@ impl Messages {
 /// Letters that controls set before a number: the class of the alarm.
 const CLASSES: [&str; 8] = ["PS", "OT", "OH", "SV", "SP", "SW", "PW", "MC"];
 
-/// Class and number: `PS0010` is PS and 10. What is no such number is its own class.
-fn class_and_number(id: &str) -> (&str, &str) {
-    let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
-    let plain = |text| if text == "" || !digits(text) { None } else { Some(text.trim_start_matches('0')) };
+/// Class and number: `PS0010` is PS and 10. What has no number is its own class.
+fn class_and_number(id: &str) -> (&str, Option<u32>) {
     let class = CLASSES.into_iter().find(|class| id.starts_with(class)).unwrap_or("");
-    match plain(&id[class.len()..]) {
-        Some(number) => (&id[..class.len()], number),
-        None => (id, ""),
+    match id[class.len()..].parse() {
+        Ok(number) => (class, Some(number)),
+        Err(_) => (id, None),
     }
 }
 
 /// `PS0010`, `ps10` and `0010` are one number; OT0500 and PS0500 are two.
 fn is_same_id(id: &str, asked: &str) -> bool {
-    let ((class, number), (wanted_class, wanted)) = (class_and_number(id), class_and_number(asked));
-    number == wanted
-        && (class == wanted_class || (!number.is_empty() && (class.is_empty() || wanted_class.is_empty())))
+    let ((class, number), (asked_class, asked_number)) = (class_and_number(id), class_and_number(asked));
+    let may_lack_class = number.is_some() && (class.is_empty() || asked_class.is_empty());
+    number == asked_number && (class == asked_class || may_lack_class)
 }
 
 fn fill(text: &str, arguments: &[(&'static str, Argument)], language: Language) -> String {

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use turnwright_control::policy::AlarmIds;
-use turnwright_control::{Control, Functions, Messages, RaisedBy, control_names};
+use turnwright_control::{Control, Functions, Messages, control_names};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -63,7 +63,7 @@ fn every_diagnostic_of_a_program_has_a_fixture() {
         let in_code = sources.contains(&format!("\"{key}\""));
         match messages.raised_by(key) {
             None if !is_shown => wrong.push(format!("{key}: no fixture shows it")),
-            Some(RaisedBy::CommandLine | RaisedBy::Limit | RaisedBy::Policy | RaisedBy::Note) if !in_code => {
+            Some(why) if why.is_raised() && !in_code => {
                 wrong.push(format!("{key}: nothing in the code raises it"));
             }
             Some(_) if is_shown => wrong.push(format!("{key}: a fixture shows it, so no reason is needed")),
