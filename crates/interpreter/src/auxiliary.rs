@@ -250,6 +250,7 @@ impl Core {
         environment: &mut dyn Environment,
     ) -> Result<(), Alarm> {
         let Some(waiting) = self.waiting.take() else { return Ok(()) };
+        self.is_plain = false;
         self.at = waiting.at;
         if let Some(id) = self.cache.current {
             // A call goes back to the block that comes next.

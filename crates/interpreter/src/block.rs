@@ -76,6 +76,16 @@ impl Core {
     /// Executes the words of a block.
     #[inline]
     pub(crate) fn execute(&mut self, block: &Block, environment: &mut dyn Environment) -> Result<(), Alarm> {
+        if self.is_plain && self.execute_plain(block, environment)? {
+            return Ok(());
+        }
+        self.is_plain = false;
+        self.execute_any(block, environment)?;
+        self.is_plain = self.has_plain_state();
+        Ok(())
+    }
+
+    fn execute_any(&mut self, block: &Block, environment: &mut dyn Environment) -> Result<(), Alarm> {
         self.has_started = true;
         if self.data_list.is_some() {
             return self.run_data_list(block);
@@ -328,7 +338,8 @@ impl Core {
         Ok(())
     }
 
-    fn change_motion(&mut self, id: FunctionId, code: u16) {
+    #[inline]
+    pub(crate) fn change_motion(&mut self, id: FunctionId, code: u16) {
         if self.modal.motion != id {
             self.modal.motion = id;
             self.forget_single_cycle();

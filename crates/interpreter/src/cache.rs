@@ -175,7 +175,7 @@ impl Cache {
     /// Fills a block with the words of a kept one.
     #[inline]
     pub(crate) fn refill(&self, block: &mut Block, first: u32, count: u8) {
-        block.refill(&self.words[first as usize..first as usize + usize::from(count)]);
+        block.refill(first, &self.words[first as usize..first as usize + usize::from(count)]);
     }
 
     /// The compiled value of a word of a kept block.
@@ -194,7 +194,7 @@ impl Cache {
         }
         self.words.extend_from_slice(&block.words);
         self.codes.extend_from_slice(codes);
-        self.codes.resize(self.words.len(), Code::default());
+        self.codes.resize(self.words.len(), Code::NONE);
         Some(self.keep(Kept::Words { first, count, computes }, frame))
     }
 

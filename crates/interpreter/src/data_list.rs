@@ -270,7 +270,7 @@ impl Core {
         if self.macros.is_protected(slot) {
             return Err(self.alarm("variable-write-protected", variable));
         }
-        let value = self.macros.machine.stored(value);
+        let value = self.macros.machine.arithmetic.stored(value);
         self.macros.variables.set(slot, value);
         Ok(())
     }

@@ -94,6 +94,7 @@ impl Core {
 
     /// The caller waits from here on.
     pub(crate) fn push_frame(&mut self, kind: FrameKind) {
+        self.is_plain = false;
         self.frames.push(Frame {
             kind,
             back: self.resume(),
@@ -444,7 +445,7 @@ impl Core {
         self.count_idle(crate::limits::IDLE_CALLS)?;
         self.program = target.number;
         self.program_start = target.start;
-        self.expects_program_number = true;
+        (self.expects_program_number, self.is_plain) = (true, false);
         self.jump(target.start, environment)
     }
 
@@ -482,7 +483,7 @@ impl Core {
             if let Some(arguments) = arguments {
                 self.macros.variables.set_locals(&arguments);
             }
-            self.expects_program_number = true;
+            (self.expects_program_number, self.is_plain) = (true, false);
             return self.jump(start, environment);
         }
         let Some(frame) = self.frames.pop() else { return Ok(()) };
@@ -511,7 +512,7 @@ impl Core {
         let from = self.program_start;
         match self.find_sequence(number, from, environment)? {
             Some((to, _)) => {
-                self.expects_program_number = true;
+                (self.expects_program_number, self.is_plain) = (true, false);
                 self.jump(to, environment)
             }
             None => Err(self.sequence_alarm(word, number)),

@@ -35,6 +35,7 @@ mod modal;
 mod moves;
 mod offsets;
 mod parts;
+mod plain;
 mod plane;
 mod punch;
 mod reading;

@@ -183,6 +183,8 @@ pub(crate) struct Core {
     pub(crate) moves_done: bool,
     pub(crate) cycle_moves: u64,
     pub(crate) has_started: bool,
+    /// Nothing in force looks at blocks that are nothing but a path: see [`plain`](crate::plain).
+    pub(crate) is_plain: bool,
     /// The next block may hold the number of its program.
     pub(crate) expects_program_number: bool,
     pub(crate) is_over: bool,
@@ -315,6 +317,7 @@ impl Interpreter {
             moves_done: true,
             cycle_moves: 0,
             has_started: false,
+            is_plain: false,
             expects_program_number: true,
             is_over: false,
             sync: None,

@@ -116,7 +116,7 @@ impl Core {
         Ok(())
     }
 
-    /// A block that was kept: nothing is read, split or compiled again.
+    /// Blocks that were kept, up to the next that may give something out: nothing is read, split or compiled again.
     #[inline]
     fn run_kept(
         &mut self,
@@ -124,36 +124,47 @@ impl Core {
         block: &mut Block,
         environment: &mut dyn Environment,
     ) -> Result<(), Halt> {
-        self.at = self.cache.place(id);
-        self.count_block()?;
-        self.count_idle(1)?;
-        let (kept, skip) = self.cache.kept(id);
-        if skip != 0 && skips(skip, environment) {
-            return Ok(self.go_on(environment)?);
-        }
-        match *kept {
-            Kept::Statement(ref statement) => {
-                let statement = *statement;
-                self.run_statement(&statement, environment)?;
+        let mut id = id;
+        loop {
+            self.at = self.cache.place(id);
+            self.count_block()?;
+            self.count_idle(1)?;
+            let (kept, skip) = self.cache.kept(id);
+            let mut is_quiet = true;
+            if skip != 0 && skips(skip, environment) {
+                return Ok(self.go_on(environment)?);
             }
-            Kept::Blank => self.go_on(environment)?,
-            Kept::Words { first, count, computes } => {
-                self.cache.refill(block, first, count);
-                self.count_idle(limits::IDLE_WORD_BLOCKS)?;
-                if computes {
-                    self.macros.word_values.clear();
-                    block.resolve(|word, place| {
-                        let code = self.cache.code(first, place);
-                        self.word_value(word, code, environment)
-                    })?;
+            match *kept {
+                Kept::Statement(statement) => {
+                    is_quiet = !statement.may_speak();
+                    self.run_statement(&statement, environment)?;
                 }
-                self.execute(block, environment)?;
-                if self.cache.current == Some(id) {
-                    self.go_on(environment)?;
+                Kept::Blank => self.go_on(environment)?,
+                Kept::Words { first, count, computes } => {
+                    is_quiet = false;
+                    self.cache.refill(block, first, count);
+                    self.count_idle(limits::IDLE_WORD_BLOCKS)?;
+                    if computes {
+                        self.macros.word_values.clear();
+                        block.resolve(|word, place| {
+                            let code = self.cache.code(first, place);
+                            self.word_value(word, code, environment)
+                        })?;
+                    }
+                    self.execute(block, environment)?;
+                    if self.cache.current == Some(id) {
+                        self.go_on(environment)?;
+                    }
                 }
             }
+            if !self.frames.is_empty() {
+                self.after_block(environment)?;
+            }
+            match self.cache.current {
+                Some(next) if is_quiet && self.macros.interrupt.is_none() => id = next,
+                _ => return Ok(()),
+            }
         }
-        if self.frames.is_empty() { Ok(()) } else { Ok(self.after_block(environment)?) }
     }
 
     #[inline]

@@ -141,6 +141,7 @@ impl Core {
         self.program_start = Resume { line: self.text_start, from: 0 };
         self.has_started = false;
         self.expects_program_number = true;
+        self.is_plain = false;
     }
 }
 

@@ -44,6 +44,13 @@ const POWER: [i64; 10] =
 /// Numbers with fewer digits than this are short enough and small enough for every control.
 const FINE_DIGITS_MAX: u64 = 100_000_000;
 
+/// How often `step` goes into a number, to the nearest; halves away from zero.
+#[inline]
+const fn nearest(digits: i64, step: i64) -> i64 {
+    let half = if digits < 0 { -step / 2 } else { step / 2 };
+    (digits + half) / step
+}
+
 impl Core {
     /// The number of a word.
     #[inline]
@@ -88,10 +95,11 @@ impl Core {
         }
         if number.is_computed() && !self.modal.is_inch && number.scale == 9 {
             // Nanometres in an increment, and the thousandths of them that computed values are held to.
-            let increment = self.settings.metric_increment.nm();
-            let step = increment * 1_000;
-            let half = if number.digits < 0 { -step / 2 } else { step / 2 };
-            let nm = (number.digits + half) / step * increment;
+            let nm = match self.settings.metric_increment.nm() {
+                // A division by a known number costs nothing.
+                1_000 => nearest(number.digits, 1_000_000) * 1_000,
+                increment => nearest(number.digits, increment * 1_000) * increment,
+            };
             if nm.abs() < self.settings.length_limit_nm {
                 return Ok(Length::from_nm(nm));
             }

@@ -162,6 +162,8 @@ pub struct Block {
     pub is_percent: bool,
     /// The text ends here whatever follows.
     pub is_end_of_text: bool,
+    /// What [`Block::refill`] filled the block from, while it still holds that.
+    copy_of: Option<u32>,
     present: u32,
     last: [u8; 26],
 }
@@ -184,6 +186,7 @@ impl Block {
         self.computes = false;
         self.is_percent = false;
         self.is_end_of_text = false;
+        self.copy_of = None;
         self.present = 0;
     }
 
@@ -197,15 +200,14 @@ impl Block {
     /// Drops every word from `kept` on (a block skip inside the block took them).
     pub fn truncate(&mut self, kept: usize) {
         let words = std::mem::take(&mut self.words);
-        self.present = 0;
-        self.has_comma = false;
+        (self.present, self.has_comma, self.copy_of) = (0, false, None);
         self.words = Vec::with_capacity(words.capacity());
         for word in words.into_iter().take(kept) {
             self.push(word);
         }
     }
 
-    /// Gives every word whose value is an expression what `value` makes of it.
+    /// Gives the words what `value` makes of them, in order.
     ///
     /// # Errors
     /// The first error of `value`; the block is then of no more use.
@@ -214,32 +216,48 @@ impl Block {
         &mut self,
         mut value: impl FnMut(&Word, usize) -> Result<Resolved, E>,
     ) -> Result<(), E> {
-        let mut kept = 0;
-        (self.present, self.has_comma) = (0, false);
-        for place in 0..self.words.len() {
-            let mut word = self.words[place];
-            if let Value::Expression { .. } = word.value {
-                match value(&word, place)? {
-                    Resolved::Number(number) => word.value = Value::Number(number),
-                    Resolved::Absent => continue,
-                    Resolved::AsWritten => {}
+        let mut has_gaps = false;
+        for (place, word) in self.words.iter_mut().enumerate() {
+            match value(word, place)? {
+                Resolved::Number(number) => word.value = Value::Number(number),
+                Resolved::Absent => {
+                    word.value = Value::Missing;
+                    has_gaps = true;
                 }
+                Resolved::AsWritten => {}
             }
-            self.words[kept] = word;
-            self.note(word, kept);
-            kept += 1;
         }
-        self.words.truncate(kept);
+        if has_gaps {
+            self.close_gaps();
+        }
         Ok(())
     }
 
-    /// Fills the block with words read before.
-    pub fn refill(&mut self, words: &[Word]) {
+    /// Drops the words that have no value.
+    #[cold]
+    fn close_gaps(&mut self) {
+        self.words.retain(|word| word.value != Value::Missing);
+        (self.present, self.has_comma, self.copy_of) = (0, false, None);
+        for place in 0..self.words.len() {
+            self.note(self.words[place], place);
+        }
+    }
+
+    /// Fills the block with words read before, which are known by a number: what holds them already stays.
+    #[inline]
+    pub fn refill(&mut self, number: u32, words: &[Word]) {
+        if self.copy_of != Some(number) {
+            self.fill(number, words);
+        }
+    }
+
+    fn fill(&mut self, number: u32, words: &[Word]) {
         self.clear();
         self.words.extend_from_slice(words);
         for (place, word) in words.iter().enumerate() {
             self.note(*word, place);
         }
+        self.copy_of = Some(number);
     }
 
     #[inline]
@@ -277,6 +295,12 @@ impl Block {
         } else {
             None
         }
+    }
+
+    /// The place of the last word with this letter and without a comma.
+    #[inline]
+    pub fn place(&self, letter: u8) -> Option<usize> {
+        self.has(letter).then(|| usize::from(self.last[usize::from(letter - b'A')]))
     }
 
     /// The last word with this letter behind a comma.

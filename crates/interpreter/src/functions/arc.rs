@@ -31,6 +31,7 @@ use crate::words::Role;
 pub(super) static ARC_CLOCKWISE: Function =
     Function::motion("arc-clockwise", |core, call| arc(core, call, Turn::Clockwise))
         .with_letters(b"RIKLD")
+        .making_a_path()
         .triggered_by(b"RIK")
         .with_other_axes()
         .allowed_in_figure()
@@ -39,6 +40,7 @@ pub(super) static ARC_CLOCKWISE: Function =
 pub(super) static ARC_COUNTER_CLOCKWISE: Function =
     Function::motion("arc-counter-clockwise", |core, call| arc(core, call, Turn::CounterClockwise))
         .with_letters(b"RIKLD")
+        .making_a_path()
         .triggered_by(b"RIK")
         .with_other_axes()
         .allowed_in_figure()

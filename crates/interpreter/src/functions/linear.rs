@@ -19,6 +19,7 @@ use crate::report::Alarm;
 
 pub(super) static LINEAR: Function = Function::motion("linear", linear)
     .drawing_lines()
+    .making_a_path()
     .with_other_axes()
     .allowed_in_figure()
     .allowed_in_rotation();

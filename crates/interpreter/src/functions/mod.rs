@@ -95,6 +95,8 @@ pub(crate) struct Function {
     pub(crate) is_multiple_cycle: bool,
     /// Its lines may be given by their angle.
     pub(crate) draws_lines: bool,
+    /// Its blocks are single moves: see [`plain`](crate::plain).
+    pub(crate) is_path: bool,
 }
 
 /// The bits of some letters.
@@ -127,6 +129,7 @@ impl Function {
             in_rotation: false,
             is_multiple_cycle: false,
             draws_lines: false,
+            is_path: false,
         }
     }
 
@@ -211,6 +214,12 @@ impl Function {
     pub(crate) const fn drawing_lines(mut self) -> Self {
         self.draws_lines = true;
         self.with_letters(crate::corner::LETTERS).triggered_by(b"AQ")
+    }
+
+    /// A path of single moves.
+    pub(crate) const fn making_a_path(mut self) -> Self {
+        self.is_path = true;
+        self
     }
 
     pub(crate) const fn multiple_cycle(mut self) -> Self {

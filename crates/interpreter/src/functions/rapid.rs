@@ -18,6 +18,7 @@ use crate::report::Alarm;
 
 pub(super) static RAPID: Function = Function::motion("rapid", rapid)
     .drawing_lines()
+    .making_a_path()
     .with_other_axes()
     .allowed_in_figure()
     .allowed_in_rotation();

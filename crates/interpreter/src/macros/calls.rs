@@ -151,6 +151,11 @@ impl CodeCalls {
         !(self.auxiliary.is_empty() && self.subprograms.is_empty() && self.direct_auxiliary_first.is_none())
     }
 
+    /// Whether any G code may call.
+    pub(crate) fn has_preparatory(&self) -> bool {
+        !self.preparatory.is_empty()
+    }
+
     /// Whether any T code may call.
     pub(crate) fn has_tools(&self) -> bool {
         self.any_tool.is_some() || !self.tools.is_empty()

@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use turnwright_syntax::{BinaryOperator, Comparison, Expression, Function, Node};
 
+use super::arithmetic::{Arithmetic, CodeFault, Rules, divide};
 use super::variables::{NULL, Variables, is_null, number};
 
 /// Most intermediate results that one expression holds; the bracket limit of every control stays below.
@@ -38,6 +39,12 @@ pub(crate) enum Op {
     DivideSlot(u16),
     CompareConstant(Comparison, f64),
     CompareSlot(Comparison, u16),
+    /// A variable and a constant: most expressions begin so.
+    SlotPlusConstant(u16, f64),
+    SlotTimesConstant(u16, f64),
+    CompareSlotWithConstant(Comparison, u16, f64),
+    /// A constant on the left of what cannot be turned round.
+    SubtractFromConstant(f64),
     /// What was pushed last, and the accumulator.
     Binary(BinaryOperator),
     Call(Function),
@@ -59,6 +66,8 @@ pub(crate) struct Code {
 }
 
 impl Code {
+    /// A number was typed.
+    pub(crate) const NONE: Self = Self { start: 0, end: 0 };
     /// What stands there is no expression but a name.
     pub(crate) const NAME: Self = Self { start: u32::MAX, end: u32::MAX };
 }
@@ -70,66 +79,16 @@ pub(crate) enum Outcome {
     Value(f64),
     /// The caller must say what the variable of this number holds, and go on with [`Machine::resume`].
     Read(f64),
+    /// The caller must round the value to what the word's address counts in, and go on in the same way.
+    Round(f64),
     /// It has no value.
     Fault(CodeFault),
-}
-
-/// Why an expression has no value, or may not be written here.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum CodeFault {
-    DivideByZero,
-    /// The argument lies outside the range of the function.
-    Argument,
-    /// A whole number does not fit 32 bits.
-    IntegerOverflow,
-    /// The value is larger than the control holds.
-    Overflow,
-    /// Brackets nest too deep.
-    Brackets,
-    /// The control does not have this function.
-    NoFunction,
-    /// The function takes its arguments otherwise.
-    Arguments,
-    /// The function's argument stands without brackets.
-    BareArgument,
-    /// The number of a loop is not 1, 2 or 3.
-    LoopNumber,
-}
-
-/// How this control computes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Rules {
-    /// Largest magnitude of a value.
-    pub(crate) magnitude_max: f64,
-    /// Values are kept to eight significant digits.
-    pub(crate) keeps_eight_digits: bool,
-    /// A null variable equals zero in `EQ` and `NE`.
-    pub(crate) null_equals_zero: bool,
-    /// `ATAN` gives -180 to 180 degrees instead of 0 to 360.
-    pub(crate) arc_tangent_is_signed: bool,
-    pub(crate) arc_sine: ArcSine,
-    /// `MOD`, `POW`, `ADP`, `ATAN` of one argument.
-    pub(crate) has_newer_functions: bool,
-    pub(crate) has_random: bool,
-    pub(crate) takes_bare_arguments: bool,
-    pub(crate) bracket_depth_max: u8,
-}
-
-/// The range of `ASIN`, degrees.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ArcSine {
-    /// -90 to 90.
-    Principal,
-    /// 270 to 360 for the negative ones, then 0 to 90.
-    Unsigned,
-    /// 90 to 270.
-    Obtuse,
 }
 
 /// The code of all expressions that are kept, and the state of the one that runs.
 #[derive(Debug)]
 pub(crate) struct Machine {
-    pub(crate) rules: Rules,
+    pub(crate) arithmetic: Arithmetic,
     code: Vec<Op>,
     /// Place of each operation in its line.
     places: Vec<(u32, u32)>,
@@ -137,23 +96,18 @@ pub(crate) struct Machine {
     depth: usize,
     at: usize,
     end: usize,
-    /// The increment that `ROUND` in a word rounds to.
-    increment: f64,
-    random: u64,
 }
 
 impl Machine {
     pub(crate) fn new(rules: Rules) -> Self {
         Self {
-            rules,
+            arithmetic: Arithmetic::new(rules),
             code: Vec::new(),
             places: Vec::new(),
             stack: [0.0; STACK_MAX],
             depth: 0,
             at: 0,
             end: 0,
-            increment: 1.0,
-            random: 0x2545_f491_4f6c_dd1d,
         }
     }
 
@@ -168,9 +122,19 @@ impl Machine {
         self.places.truncate(mark);
     }
 
-    /// The place of the operation that ran last.
+    /// The place of the operation that ran last, of code that has no value.
     pub(crate) fn fault_place(&self) -> Range<u32> {
-        let (start, end) = self.places.get(self.at.wrapping_sub(1)).copied().unwrap_or_default();
+        self.place(self.at)
+    }
+
+    /// The place of the operation that some code ends with.
+    pub(crate) fn end_place(&self, code: Code) -> Range<u32> {
+        self.place(code.end as usize)
+    }
+
+    /// The place of the operation before this one.
+    fn place(&self, at: usize) -> Range<u32> {
+        let (start, end) = self.places.get(at.wrapping_sub(1)).copied().unwrap_or_default();
         start..end
     }
 
@@ -184,11 +148,11 @@ impl Machine {
         let start = self.code.len();
         let whole = expression.node(expression.root()).map_or(0..0, |(_, place)| place);
         if let Some(place) = expression.bare_argument()
-            && !self.rules.takes_bare_arguments
+            && !self.arithmetic.rules.takes_bare_arguments
         {
             return Err((CodeFault::BareArgument, place));
         }
-        if expression.bracket_depth() > self.rules.bracket_depth_max {
+        if expression.bracket_depth() > self.arithmetic.rules.bracket_depth_max {
             return Err((CodeFault::Brackets, whole));
         }
         let compiler = Compiler { expression, variables, in_word };
@@ -201,13 +165,34 @@ impl Machine {
         self.places.push((place.start, place.end));
     }
 
+    /// The value of code that is a single operation on variables that have a place of their own; `None` for other
+    /// code, and where there is no value.
+    #[inline]
+    pub(crate) fn at_once(&self, code: Code, variables: &Variables) -> Option<f64> {
+        if code.end != code.start + 1 {
+            return None;
+        }
+        let slots = variables.slots();
+        let slot = |place: u16| slots[usize::from(place)];
+        let value = match *self.code.get(code.start as usize)? {
+            Op::Constant(constant) => return Some(constant),
+            Op::Raw(place) => return Some(slot(place)),
+            Op::CompareSlotWithConstant(comparison, place, constant) => {
+                return Some(self.arithmetic.compare(comparison, slot(place), constant));
+            }
+            Op::SlotPlusConstant(place, constant) => number(slot(place)) + constant,
+            Op::SlotTimesConstant(place, constant) => number(slot(place)) * constant,
+            _ => return None,
+        };
+        within(value, self.arithmetic.rules.magnitude_max).then_some(value)
+    }
+
     /// Runs code from its start.
     #[inline]
-    pub(crate) fn start(&mut self, code: Code, increment: f64, variables: &Variables) -> Outcome {
+    pub(crate) fn start(&mut self, code: Code, variables: &Variables) -> Outcome {
         self.at = code.start as usize;
         self.end = code.end as usize;
         self.depth = 0;
-        self.increment = increment;
         self.run(NULL, variables)
     }
 
@@ -219,202 +204,94 @@ impl Machine {
     #[inline]
     fn run(&mut self, mut value: f64, variables: &Variables) -> Outcome {
         let slots = variables.slots();
-        let limit = self.rules.magnitude_max;
+        let limit = self.arithmetic.rules.magnitude_max;
         let slot = |place: u16| number(slots[usize::from(place)]);
-        let mut at = self.at;
-        let end = self.end;
-        let fault = loop {
-            if at >= end {
-                self.at = at;
-                return Outcome::Value(value);
-            }
-            let op = self.code[at];
-            at += 1;
-            match op {
-                Op::Constant(constant) => value = constant,
-                Op::Raw(place) => value = slots[usize::from(place)],
-                Op::Number(place) => value = slot(place),
+        let ops = self.code.get(self.at..self.end).unwrap_or_default();
+        for (place, op) in ops.iter().enumerate() {
+            let result = match *op {
+                Op::Constant(constant) => {
+                    value = constant;
+                    continue;
+                }
+                Op::Raw(place) => {
+                    value = slots[usize::from(place)];
+                    continue;
+                }
+                Op::Number(place) => {
+                    value = slot(place);
+                    continue;
+                }
                 Op::Push => {
                     self.stack[self.depth] = value;
                     self.depth += 1;
+                    continue;
                 }
-                Op::Negate => value = -number(value),
-                Op::NegateUnlessNull if is_null(value) => {}
-                Op::NegateUnlessNull => value = -value,
-                Op::AddConstant(constant) => value += constant,
-                Op::AddSlot(place) => value += slot(place),
-                Op::SubtractConstant(constant) => value -= constant,
-                Op::SubtractSlot(place) => value -= slot(place),
-                Op::MultiplyConstant(constant) => value *= constant,
-                Op::MultiplySlot(place) => value *= slot(place),
-                Op::DivideConstant(divisor) => match divide(value, divisor) {
-                    Ok(quotient) => value = quotient,
-                    Err(fault) => break fault,
-                },
-                Op::DivideSlot(place) => match divide(value, slot(place)) {
-                    Ok(quotient) => value = quotient,
-                    Err(fault) => break fault,
-                },
+                Op::Negate => {
+                    value = -number(value);
+                    continue;
+                }
+                Op::NegateUnlessNull => {
+                    value = if is_null(value) { value } else { -value };
+                    continue;
+                }
+                Op::AsNumber => {
+                    value = number(value);
+                    continue;
+                }
                 Op::CompareConstant(comparison, constant) => {
-                    value = self.compare(comparison, value, constant);
+                    value = self.arithmetic.compare(comparison, value, constant);
                     continue;
                 }
                 Op::CompareSlot(comparison, place) => {
-                    value = self.compare(comparison, value, slots[usize::from(place)]);
+                    value = self.arithmetic.compare(comparison, value, slots[usize::from(place)]);
                     continue;
                 }
-                Op::Binary(operator) => {
-                    self.depth -= 1;
-                    match self.binary(operator, self.stack[self.depth], value) {
-                        Ok(result) => value = result,
-                        Err(fault) => break fault,
-                    }
-                }
-                Op::Call(function) => match self.call(function, number(value)) {
-                    Ok(result) => value = result,
-                    Err(fault) => break fault,
-                },
-                Op::CallTwo(function) => {
-                    self.depth -= 1;
-                    match self.call_two(function, self.stack[self.depth], number(value)) {
-                        Ok(result) => value = result,
-                        Err(fault) => break fault,
-                    }
+                Op::CompareSlotWithConstant(comparison, place, constant) => {
+                    value = self.arithmetic.compare(comparison, slots[usize::from(place)], constant);
+                    continue;
                 }
                 Op::Read => {
-                    self.at = at;
+                    self.at += place + 1;
                     return Outcome::Read(number(value));
                 }
-                Op::AsNumber => value = number(value),
-                Op::RoundToIncrement => value = round(number(value) / self.increment) * self.increment,
-            }
-            // Null is no number and passes; whatever else is not within the limit has overflown.
-            if !within(value, limit) && !is_null(value) {
-                break CodeFault::Overflow;
-            }
-        };
-        self.at = at;
-        Outcome::Fault(fault)
-    }
-
-    #[inline]
-    fn compare(&self, comparison: Comparison, left: f64, right: f64) -> f64 {
-        let same = || {
-            if self.rules.null_equals_zero || is_null(left) == is_null(right) {
-                number(left) == number(right)
-            } else {
-                false
-            }
-        };
-        let holds = match comparison {
-            Comparison::Equal => same(),
-            Comparison::NotEqual => !same(),
-            Comparison::Greater => number(left) > number(right),
-            Comparison::Less => number(left) < number(right),
-            Comparison::GreaterOrEqual => number(left) >= number(right),
-            Comparison::LessOrEqual => number(left) <= number(right),
-        };
-        f64::from(u8::from(holds))
-    }
-
-    pub(super) fn binary(&self, operator: BinaryOperator, left: f64, right: f64) -> Result<f64, CodeFault> {
-        if let BinaryOperator::Compare(comparison) = operator {
-            return Ok(self.compare(comparison, left, right));
+                Op::RoundToIncrement => {
+                    self.at += place + 1;
+                    return Outcome::Round(number(value));
+                }
+                Op::AddConstant(constant) => Ok(value + constant),
+                Op::AddSlot(place) => Ok(value + slot(place)),
+                Op::SubtractConstant(constant) => Ok(value - constant),
+                Op::SubtractSlot(place) => Ok(value - slot(place)),
+                Op::SubtractFromConstant(constant) => Ok(constant - value),
+                Op::MultiplyConstant(constant) => Ok(value * constant),
+                Op::MultiplySlot(place) => Ok(value * slot(place)),
+                Op::SlotPlusConstant(place, constant) => Ok(slot(place) + constant),
+                Op::SlotTimesConstant(place, constant) => Ok(slot(place) * constant),
+                Op::DivideConstant(divisor) => divide(value, divisor),
+                Op::DivideSlot(place) => divide(value, slot(place)),
+                Op::Binary(operator) => {
+                    self.depth -= 1;
+                    self.arithmetic.binary(operator, self.stack[self.depth], value)
+                }
+                Op::Call(function) => self.arithmetic.call(function, number(value)),
+                Op::CallTwo(function) => {
+                    self.depth -= 1;
+                    self.arithmetic.call_two(function, self.stack[self.depth], number(value))
+                }
+            };
+            let fault = match result {
+                Ok(result) if within(result, limit) => {
+                    value = result;
+                    continue;
+                }
+                Ok(_) => CodeFault::Overflow,
+                Err(fault) => fault,
+            };
+            self.at += place + 1;
+            return Outcome::Fault(fault);
         }
-        let (left, right) = (number(left), number(right));
-        Ok(match operator {
-            BinaryOperator::Add => left + right,
-            BinaryOperator::Subtract => left - right,
-            BinaryOperator::Multiply => left * right,
-            BinaryOperator::Divide => divide(left, right)?,
-            BinaryOperator::Modulo => left - divide(left, right)?.trunc() * right,
-            BinaryOperator::And => f64::from(whole(left)? & whole(right)?),
-            BinaryOperator::Or => f64::from(whole(left)? | whole(right)?),
-            BinaryOperator::ExclusiveOr => f64::from(whole(left)? ^ whole(right)?),
-            BinaryOperator::Compare(_) => unreachable!("done above"),
-        })
-    }
-
-    pub(super) fn call(&mut self, function: Function, value: f64) -> Result<f64, CodeFault> {
-        Ok(match function {
-            Function::Sin => sine(value),
-            Function::Cos => sine(value + 90.0),
-            Function::Tan => divide(sine(value), sine(value + 90.0))?,
-            Function::ArcSin => self.arc_sine(value)?,
-            Function::ArcCos if value.abs() <= 1.0 => value.acos().to_degrees(),
-            Function::ArcTan => value.atan().to_degrees(),
-            Function::SquareRoot if value >= 0.0 => value.sqrt(),
-            Function::Absolute => value.abs(),
-            Function::Logarithm if value > 0.0 => value.ln(),
-            Function::Exponential => value.exp(),
-            Function::Round => round(value),
-            Function::RoundDown => value.trunc(),
-            Function::RoundUp => {
-                if value < 0.0 {
-                    value.floor()
-                } else {
-                    value.ceil()
-                }
-            }
-            Function::ToBinary => to_binary(value)?,
-            Function::ToDecimal => to_decimal(value)?,
-            // A number in an expression has its point already.
-            Function::AddPoint => value,
-            Function::Random => self.random_up_to(value),
-            _ => return Err(CodeFault::Argument),
-        })
-    }
-
-    pub(super) fn call_two(&mut self, function: Function, first: f64, second: f64) -> Result<f64, CodeFault> {
-        let first = number(first);
-        Ok(match function {
-            Function::ArcTan => {
-                if first == 0.0 && second == 0.0 {
-                    return Err(CodeFault::Argument);
-                }
-                let angle = first.atan2(second).to_degrees();
-                if angle < 0.0 && !self.rules.arc_tangent_is_signed { angle + 360.0 } else { angle }
-            }
-            Function::Power => {
-                if first == 0.0 && second < 0.0 {
-                    return Err(CodeFault::DivideByZero);
-                }
-                let power = first.powf(second);
-                if power.is_nan() {
-                    return Err(CodeFault::Argument);
-                }
-                power
-            }
-            Function::RandomBetween => first + self.random_up_to(second - first),
-            _ => return Err(CodeFault::Arguments),
-        })
-    }
-
-    fn arc_sine(&self, value: f64) -> Result<f64, CodeFault> {
-        if value.abs() > 1.0 {
-            return Err(CodeFault::Argument);
-        }
-        let angle = value.asin().to_degrees();
-        Ok(match self.rules.arc_sine {
-            ArcSine::Principal => angle,
-            ArcSine::Unsigned if angle < 0.0 => angle + 360.0,
-            ArcSine::Unsigned => angle,
-            ArcSine::Obtuse => 180.0 - angle,
-        })
-    }
-
-    /// The same numbers in every run: a program must do the same thing twice.
-    fn random_up_to(&mut self, limit: f64) -> f64 {
-        self.random ^= self.random << 13;
-        self.random ^= self.random >> 7;
-        self.random ^= self.random << 17;
-        (self.random >> 11) as f64 / (1u64 << 53) as f64 * limit
-    }
-
-    /// A value as the control stores it.
-    #[inline]
-    pub(crate) fn stored(&self, value: f64) -> f64 {
-        if self.rules.keeps_eight_digits && !is_null(value) { eight_digits(value) } else { value }
+        self.at = self.end;
+        Outcome::Value(value)
     }
 }
 
@@ -524,26 +401,51 @@ impl Compiler<'_> {
         place: &Range<u32>,
     ) -> Compiled {
         use BinaryOperator as B;
-        if operator == B::Modulo && !machine.rules.has_newer_functions {
+        if operator == B::Modulo && !machine.arithmetic.rules.has_newer_functions {
             return Err((CodeFault::NoFunction, place.clone()));
+        }
+        let (slots, constants) =
+            ((self.slot(left), self.slot(right)), (self.constant(left), self.constant(right)));
+        let whole = match (operator, slots.0, constants.1) {
+            (B::Compare(comparison), Some(slot), Some(constant)) => {
+                Some(Op::CompareSlotWithConstant(comparison, slot, constant))
+            }
+            (B::Add, Some(slot), Some(constant)) => Some(Op::SlotPlusConstant(slot, number(constant))),
+            (B::Subtract, Some(slot), Some(constant)) => Some(Op::SlotPlusConstant(slot, -number(constant))),
+            (B::Multiply, Some(slot), Some(constant)) => Some(Op::SlotTimesConstant(slot, number(constant))),
+            _ => None,
+        };
+        if let Some(op) = whole {
+            machine.emit(op, place);
+            return Ok(());
+        }
+        // A constant on the left: the right side first, so that nothing has to be held.
+        let turned = match (operator, constants.0.map(number)) {
+            (B::Add, Some(constant)) => Some(Op::AddConstant(constant)),
+            (B::Subtract, Some(constant)) => Some(Op::SubtractFromConstant(constant)),
+            (B::Multiply, Some(constant)) => Some(Op::MultiplyConstant(constant)),
+            _ => None,
+        };
+        if let Some(op) = turned {
+            self.as_number(machine, right, depth)?;
+            machine.emit(op, place);
+            return Ok(());
         }
         if let B::Compare(_) = operator {
             self.node(machine, left, depth)?;
         } else {
             self.as_number(machine, left, depth)?;
         }
-        let op = match (operator, self.constant(right).map(number), self.slot(right)) {
-            (B::Compare(comparison), Some(_), _) => {
-                Op::CompareConstant(comparison, self.constant(right).unwrap_or(NULL))
-            }
+        let op = match (operator, constants.1, slots.1) {
+            (B::Compare(comparison), Some(constant), _) => Op::CompareConstant(comparison, constant),
             (B::Compare(comparison), _, Some(slot)) => Op::CompareSlot(comparison, slot),
-            (B::Add, Some(constant), _) => Op::AddConstant(constant),
+            (B::Add, Some(constant), _) => Op::AddConstant(number(constant)),
             (B::Add, _, Some(slot)) => Op::AddSlot(slot),
-            (B::Subtract, Some(constant), _) => Op::SubtractConstant(constant),
+            (B::Subtract, Some(constant), _) => Op::SubtractConstant(number(constant)),
             (B::Subtract, _, Some(slot)) => Op::SubtractSlot(slot),
-            (B::Multiply, Some(constant), _) => Op::MultiplyConstant(constant),
+            (B::Multiply, Some(constant), _) => Op::MultiplyConstant(number(constant)),
             (B::Multiply, _, Some(slot)) => Op::MultiplySlot(slot),
-            (B::Divide, Some(constant), _) => Op::DivideConstant(constant),
+            (B::Divide, Some(constant), _) => Op::DivideConstant(number(constant)),
             (B::Divide, _, Some(slot)) => Op::DivideSlot(slot),
             _ => {
                 machine.emit(Op::Push, place);
@@ -562,7 +464,7 @@ impl Compiler<'_> {
         second: Option<usize>,
         place: &Range<u32>,
     ) -> Compiled {
-        let rules = &machine.rules;
+        let rules = &machine.arithmetic.rules;
         let fault = match function {
             Function::Power | Function::AddPoint if !rules.has_newer_functions => CodeFault::NoFunction,
             Function::Random | Function::RandomBetween if !rules.has_random => CodeFault::NoFunction,
@@ -579,110 +481,4 @@ impl Compiler<'_> {
 #[inline]
 fn within(value: f64, limit: f64) -> bool {
     value.abs() <= limit
-}
-
-fn divide(left: f64, right: f64) -> Result<f64, CodeFault> {
-    if right == 0.0 { Err(CodeFault::DivideByZero) } else { Ok(left / right) }
-}
-
-/// The sine of an angle in degrees, exact at every multiple of 90.
-#[inline]
-fn sine(degrees: f64) -> f64 {
-    /// Adding and taking away this rounds to a whole number.
-    const WHOLE: f64 = 6_755_399_441_055_744.0;
-    /// Beyond, neighbouring floats are about as far apart as a quarter turn.
-    const FAR: f64 = 1e15;
-    let degrees = if degrees.abs() < FAR { degrees } else { degrees % 360.0 };
-    let quarter = (degrees / 90.0 + WHOLE) - WHOLE;
-    let rest = (degrees - quarter * 90.0).to_radians();
-    match quarter as i64 & 3 {
-        0 => rest.sin(),
-        1 => rest.cos(),
-        2 => -rest.sin(),
-        _ => -rest.cos(),
-    }
-}
-
-/// To the nearest whole number, halves away from zero.
-fn round(value: f64) -> f64 {
-    value.round()
-}
-
-fn whole(value: f64) -> Result<i32, CodeFault> {
-    let rounded = value.round();
-    if rounded >= f64::from(i32::MIN) && rounded <= f64::from(i32::MAX) {
-        Ok(rounded as i32)
-    } else {
-        Err(CodeFault::IntegerOverflow)
-    }
-}
-
-/// Largest number of eight binary coded digits.
-const CODED_MAX: f64 = 99_999_999.0;
-
-/// Binary coded decimal to binary: 0x25 (37) is 25.
-fn to_binary(value: f64) -> Result<f64, CodeFault> {
-    let coded = value.round();
-    if !(0.0..=f64::from(u32::MAX)).contains(&coded) {
-        return Err(CodeFault::Argument);
-    }
-    let text = format!("{:x}", coded as u32);
-    text.parse::<u32>().map(f64::from).map_err(|_| CodeFault::Argument)
-}
-
-/// Binary to binary coded decimal: 25 is 0x25 (37).
-fn to_decimal(value: f64) -> Result<f64, CodeFault> {
-    let plain = value.round();
-    if !(0.0..=CODED_MAX).contains(&plain) {
-        return Err(CodeFault::Argument);
-    }
-    u32::from_str_radix(&format!("{}", plain as u32), 16).map(f64::from).map_err(|_| CodeFault::Argument)
-}
-
-/// Eight significant digits, and nothing below the smallest magnitude of the older controls.
-fn eight_digits(value: f64) -> f64 {
-    const SMALLEST: f64 = 1e-29;
-    if value.abs() < SMALLEST {
-        return 0.0;
-    }
-    let places = 7 - value.abs().log10().floor() as i32;
-    if places.abs() > 300 {
-        return value;
-    }
-    let scale = 10f64.powi(places.abs());
-    if places >= 0 { (value * scale).round() / scale } else { (value / scale).round() * scale }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sines_are_exact_at_quarters_and_good_between() {
-        for turns in -8i32..8 {
-            let degrees = f64::from(turns) * 90.0;
-            let exact = [0.0, 1.0, 0.0, -1.0][turns.rem_euclid(4) as usize];
-            assert_eq!(sine(degrees).abs(), f64::abs(exact), "{degrees}");
-        }
-        for tenth in -36_000..36_000 {
-            let degrees = f64::from(tenth) / 10.0;
-            assert!((sine(degrees) - degrees.to_radians().sin()).abs() < 1e-13, "{degrees}");
-        }
-        assert!(sine(1e300).abs() <= 1.0);
-    }
-
-    #[test]
-    fn coded_decimals() {
-        assert_eq!(to_binary(37.0), Ok(25.0));
-        assert_eq!(to_decimal(25.0), Ok(37.0));
-        assert_eq!(to_binary(26.0), Err(CodeFault::Argument));
-        assert_eq!(to_decimal(-1.0), Err(CodeFault::Argument));
-    }
-
-    #[test]
-    fn eight_significant_digits() {
-        assert_eq!(eight_digits(1.0 / 3.0), 0.333_333_33);
-        assert_eq!(eight_digits(123_456_789.0), 123_456_790.0);
-        assert_eq!(eight_digits(1e-30), 0.0);
-    }
 }

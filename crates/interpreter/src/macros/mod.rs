@@ -5,6 +5,7 @@
 //! value that is not finite leaves it.
 
 mod arguments;
+mod arithmetic;
 mod calls;
 mod code;
 mod output;
@@ -14,9 +15,10 @@ mod system;
 mod type_a;
 mod variables;
 
+use arithmetic::{ArcSine, Rules};
 pub(crate) use calls::{CallKind, CodeCalls, ModalCall, Program};
 pub(crate) use code::Code;
-use code::{ArcSine, Machine, Outcome, Rules};
+use code::{Machine, Outcome};
 pub(crate) use statement::Statement;
 use turnwright_control::policy::{ArcSineRange, BareArgument, MacroFunctions, MacroPrecision, NullVariable};
 use turnwright_control::{Control, Parameters};
@@ -123,28 +125,38 @@ fn protected_slots(parameters: &Parameters, variables: &Variables) -> Option<(u1
 }
 
 impl Core {
-    /// Runs compiled code; `increment` is what `ROUND` in a word rounds to.
+    /// Runs the compiled code of a statement.
     #[inline]
-    pub(crate) fn evaluate(
+    pub(crate) fn evaluate(&mut self, code: Code, environment: &mut dyn Environment) -> Result<f64, Halt> {
+        match self.macros.machine.at_once(code, &self.macros.variables) {
+            Some(value) => Ok(value),
+            None => self.evaluate_all(code, None, environment),
+        }
+    }
+
+    /// Runs compiled code; in a word, `ROUND` rounds to what its address counts in.
+    fn evaluate_all(
         &mut self,
         code: Code,
-        increment: f64,
+        address: Option<u8>,
         environment: &mut dyn Environment,
     ) -> Result<f64, Halt> {
         let macros = &mut self.macros;
-        let mut outcome = macros.machine.start(code, increment, &macros.variables);
+        let mut outcome = macros.machine.start(code, &macros.variables);
         loop {
-            match outcome {
+            let value = match outcome {
                 Outcome::Value(value) => return Ok(value),
-                Outcome::Read(variable) => {
-                    let value = self.read_variable(variable, environment)?;
-                    outcome = self.macros.machine.resume(value, &self.macros.variables);
+                Outcome::Read(variable) => self.read_variable(variable, environment)?,
+                Outcome::Round(value) => {
+                    let increment = address.map_or(1.0, |address| self.word_increment(address));
+                    (value / increment).round() * increment
                 }
                 Outcome::Fault(fault) => {
                     let place = self.macros.machine.fault_place();
                     return Err(self.code_fault(fault, place).into());
                 }
-            }
+            };
+            outcome = self.macros.machine.resume(value, &self.macros.variables);
         }
     }
 
@@ -173,7 +185,7 @@ impl Core {
         self.macros.word_values.clear();
         for word in &block.words {
             let Value::Expression { start, end } = word.value else {
-                codes.push(Code::default());
+                codes.push(Code::NONE);
                 continue;
             };
             if matches!(word.address, b'N' | b'O') {
@@ -201,11 +213,13 @@ impl Core {
         code: Code,
         environment: &mut dyn Environment,
     ) -> Result<Resolved, Halt> {
-        if code == Code::NAME {
+        if code == Code::NONE || code == Code::NAME {
             return Ok(Resolved::AsWritten);
         }
-        let increment = self.word_increment(word.address);
-        let value = self.evaluate(code, increment, environment)?;
+        let value = match self.macros.machine.at_once(code, &self.macros.variables) {
+            Some(value) => value,
+            None => self.evaluate_all(code, Some(word.address), environment)?,
+        };
         if is_null(value) && self.control.policies.null_variable == NullVariable::IsNothing {
             return Ok(Resolved::Absent);
         }

@@ -134,7 +134,7 @@ impl Core {
         let mark = self.macros.machine.mark();
         let code = self.macros.machine.compile(&expression, &self.macros.variables, false);
         let code = code.map_err(|(fault, place)| self.code_fault(fault, place))?;
-        let value = self.evaluate(code, 1.0, environment);
+        let value = self.evaluate(code, environment);
         self.macros.machine.forget(mark);
         Ok(number(value?))
     }

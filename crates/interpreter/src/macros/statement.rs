@@ -10,7 +10,8 @@ use std::ops::Range;
 use turnwright_diagnostics::Diagnostic;
 use turnwright_syntax::{Expected, Expression, ExpressionFault, Node, Statement as Written, parse_statement};
 
-use super::code::{Code, CodeFault};
+use super::arithmetic::CodeFault;
+use super::code::Code;
 use super::variables::number;
 use crate::Environment;
 use crate::cache::Way;
@@ -63,6 +64,17 @@ pub(crate) enum Statement {
         start: u32,
         end: u32,
     },
+}
+
+impl Statement {
+    /// Whether it may give out a command or make the caller wait.
+    pub(crate) fn may_speak(&self) -> bool {
+        match self {
+            Self::Assign { target, .. } | Self::IfThen { target, .. } => matches!(target, Target::Number(_)),
+            Self::Output { .. } => true,
+            _ => false,
+        }
+    }
 }
 
 /// Largest sequence number that a jump may name, by digits.
@@ -202,21 +214,21 @@ impl Core {
 
     #[inline]
     fn holds(&mut self, condition: Code, environment: &mut dyn Environment) -> Result<bool, Halt> {
-        Ok(number(self.evaluate(condition, 1.0, environment)?) != 0.0)
+        Ok(number(self.evaluate(condition, environment)?) != 0.0)
     }
 
     #[inline]
     fn assign(&mut self, target: Target, value: Code, environment: &mut dyn Environment) -> Result<(), Halt> {
         match target {
             Target::Slot(slot) => {
-                let value = self.evaluate(value, 1.0, environment)?;
-                let value = self.macros.machine.stored(value);
+                let value = self.evaluate(value, environment)?;
+                let value = self.macros.machine.arithmetic.stored(value);
                 self.macros.variables.set(slot, value);
             }
             Target::Number(target) => {
-                let variable = number(self.evaluate(target, 1.0, environment)?);
-                let place = self.macros.machine.fault_place();
-                let value = self.evaluate(value, 1.0, environment)?;
+                let variable = number(self.evaluate(target, environment)?);
+                let place = self.macros.machine.end_place(target);
+                let value = self.evaluate(value, environment)?;
                 self.write_variable(variable, value, place, environment)?;
             }
         }
@@ -239,7 +251,7 @@ impl Core {
         let wanted = match label {
             Label::Fixed(wanted) => wanted,
             Label::Computed(code) => {
-                let value = number(self.evaluate(code, 1.0, environment)?).round();
+                let value = number(self.evaluate(code, environment)?).round();
                 let max = sequence_max(self.control.limits.sequence_digits);
                 if !(1.0..=max).contains(&value) {
                     return Err(self.label_alarm("jump-number-out-of-range", format!("{value}")).into());

@@ -270,11 +270,12 @@ impl Core {
             let diagnostic = Diagnostic::alarm(key).at(core.at.span(place.start, place.end));
             Halt::from(core.finish(diagnostic.with("word", quote)))
         };
+        self.is_plain = false;
         if let Some(slot) = self.macros.variables.slot(variable) {
             if self.macros.is_protected(slot) {
                 return Err(alarm(self, "variable-write-protected"));
             }
-            let value = self.macros.machine.stored(value);
+            let value = self.macros.machine.arithmetic.stored(value);
             self.macros.variables.set(slot, value);
             return Ok(());
         }

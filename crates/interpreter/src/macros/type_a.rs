@@ -8,7 +8,7 @@ use turnwright_diagnostics::Diagnostic;
 use turnwright_syntax::{BinaryOperator, Block, Function, Node, Value, Word, parse_expression};
 
 use super::CallKind;
-use super::code::CodeFault;
+use super::arithmetic::CodeFault;
 use super::variables::number;
 use crate::Environment;
 use crate::functions::Kind;
@@ -151,17 +151,17 @@ impl Core {
             Operation::Copy => Ok(left),
             Operation::Binary(operator) => {
                 let right = right(self)?;
-                self.macros.machine.binary(operator, left, right)
+                self.macros.machine.arithmetic.binary(operator, left, right)
             }
-            Operation::Function(function) => self.macros.machine.call(function, left),
+            Operation::Function(function) => self.macros.machine.arithmetic.call(function, left),
             Operation::Hypotenuse => Ok(left.hypot(right(self)?)),
             Operation::Times(function) => {
                 let angle = right(self)?;
-                self.macros.machine.call(function, angle).map(|value| left * value)
+                self.macros.machine.arithmetic.call(function, angle).map(|value| left * value)
             }
             Operation::Angle => {
                 let right = right(self)?;
-                self.macros.machine.call_two(Function::ArcTan, left, right)
+                self.macros.machine.arithmetic.call_two(Function::ArcTan, left, right)
             }
             Operation::MultiplyDivide => {
                 let divisor = right(self)?;
@@ -172,7 +172,7 @@ impl Core {
                     }
                     None => 0.0,
                 };
-                self.macros.machine.binary(BinaryOperator::Divide, held * left, divisor)
+                self.macros.machine.arithmetic.binary(BinaryOperator::Divide, held * left, divisor)
             }
             Operation::Go | Operation::GoIf(..) | Operation::Alarm => Ok(0.0),
         };
@@ -207,7 +207,7 @@ impl Core {
             Value::Number(value) => Ok(value.digits as f64 / 10f64.powi(i32::from(value.scale))),
             Value::Expression { start, end } => {
                 let code = self.type_a_code(start..end)?;
-                let value = self.evaluate(code.1, 1.0, environment);
+                let value = self.evaluate(code.1, environment);
                 self.macros.machine.forget(code.0);
                 Ok(number(value?))
             }
@@ -240,7 +240,7 @@ impl Core {
         };
         // What stands behind the first `#` is the number.
         let (mark, code) = self.type_a_code(start + 1..end)?;
-        let value = self.evaluate(code, 1.0, environment);
+        let value = self.evaluate(code, environment);
         self.macros.machine.forget(mark);
         Ok(number(value?))
     }

@@ -1,0 +1,95 @@
+//! The short way of most blocks: a path word by word, with nothing else in force.
+//!
+//! In: a block of a sequence number, G00 to G03, axis words, `R`, `I`, `K` and a feed. Out: the same as
+//! [`block`](crate::block) would make of it; whatever else a block may be or meet goes there. Whether something
+//! in force wants to see every block is asked once, behind a block that could have changed it, and not in each.
+
+use turnwright_syntax::{Block, Value, Word};
+
+use crate::Environment;
+use crate::axes::Plane;
+use crate::block::Call;
+use crate::functions::FunctionId;
+use crate::machine::Core;
+use crate::report::Alarm;
+
+/// Axis words.
+const AXES: u32 = Block::bit(b'X') | Block::bit(b'Z') | Block::bit(b'U') | Block::bit(b'W');
+/// Centre and radius of an arc.
+const BEND: u32 = Block::bit(b'I') | Block::bit(b'K') | Block::bit(b'R');
+const PLAIN: u32 = AXES | BEND | Block::bit(b'G') | Block::bit(b'N') | Block::bit(b'F');
+
+impl Core {
+    /// Executes a block if it is plain; false when it is not, and nothing was done.
+    #[inline]
+    pub(crate) fn execute_plain(
+        &mut self,
+        block: &Block,
+        environment: &mut dyn Environment,
+    ) -> Result<bool, Alarm> {
+        let present = block.present();
+        if present & !PLAIN != 0
+            || present & AXES == 0
+            || block.has_comma
+            || block.words.len() as u32 != present.count_ones()
+        {
+            return Ok(false);
+        }
+        let word = block.word(b'G');
+        let code = match word.map(|word| self.plain_code(word)) {
+            None => None,
+            Some(Some(code)) => Some(code),
+            Some(None) => return Ok(false),
+        };
+        let id = code.map_or(self.modal.motion, |(id, _)| id);
+        let function = id.get();
+        if !function.is_path || (present & BEND != 0 && function.draws_lines) {
+            return Ok(false);
+        }
+        if let Some(place) = block.place(b'N') {
+            self.sequence_number(block, place)?;
+        }
+        if let Some((id, code)) = code {
+            self.change_motion(id, code);
+        }
+        if let Some(word) = block.word(b'F') {
+            self.feed_word(word, function)?;
+        }
+        function.run(self, &mut Call { block, environment, code: self.modal.motion_code, word })?;
+        self.is_plain = self.corner.is_none();
+        Ok(true)
+    }
+
+    /// The function of a G word written without sign, point or surplus digits.
+    #[inline]
+    fn plain_code(&self, word: &Word) -> Option<(FunctionId, u16)> {
+        match word.value {
+            Value::Number(number)
+                if number.scale == 0 && !number.is_negative && (0..1_000).contains(&number.digits) =>
+            {
+                let code = number.digits as u16 * 10;
+                self.dispatch.function(code).map(|id| (id, code))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether nothing in force looks at blocks of a path.
+    pub(crate) fn has_plain_state(&self) -> bool {
+        let calls = &self.macros.calls;
+        self.has_started
+            && !self.is_over
+            && !self.expects_program_number
+            && !self.stops_once
+            && self.thread_blocks == 0
+            && self.data_list.is_none()
+            && self.corner.is_none()
+            && self.untaken.is_none()
+            && self.macros.modal_calls.is_empty()
+            && !(calls.has_preparatory() || calls.has_auxiliary() || calls.has_tools())
+            && self.axes.plane == Plane::Zx
+            && !self.axes.is_virtual()
+            && self.transform.rotation.is_none()
+            && !self.is_in_figure()
+    }
+}
