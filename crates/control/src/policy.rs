@@ -305,6 +305,15 @@ policies! {
         /// With `K1` in the block that begins it.
         ByWord,
     }
+    /// Repetitive cycles with everything in one block, beside those in two.
+    cycle_form: CycleForm {
+        /// They do not exist.
+        Absent,
+        /// One form is read, as the parameter says.
+        ByParameter,
+        /// Both are read, each by its letters; a warning says where the parameter wants the other.
+        Recognised,
+    }
     /// What roughing with pockets does.
     type_two: TypeTwo {
         /// It exists.
@@ -367,6 +376,24 @@ policies! {
         Accumulate,
         /// Each depth is the larger of the root rule and its predecessor in that rule plus the least depth.
         Formula,
+    }
+    /// The packed digits of the threading cycle (passes, run-out, angle) when fewer than six are written.
+    thread_digits: ThreadDigits {
+        /// Zeros stand before them; a number of passes of zero leaves the one before.
+        LeadingZeros,
+        /// Parts that are not written stay as they were.
+        PartsWritten,
+        /// All three parts must be written.
+        AllParts,
+    }
+    /// Further words of the threading cycle.
+    multi_thread_words: MultiThreadWords {
+        /// None.
+        Plain,
+        /// J and K, the run-out, in the block that stores.
+        RunOutInData,
+        /// D, the flanks, and L, the number of starts, in the block that stores; J and K in the block that cuts.
+        FlanksAndStarts,
     }
     /// Nose angles that the threading cycle takes.
     thread_angles: ThreadAngles {

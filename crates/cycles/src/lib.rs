@@ -40,6 +40,7 @@ mod misuse;
 mod pattern;
 mod plane;
 mod roughing;
+mod semi_finish;
 mod single;
 mod threading;
 
@@ -51,11 +52,14 @@ pub use groove::{Groove, GrooveRequest, PeckAxis, ReliefDirection, groove};
 pub use misuse::Misuse;
 pub use pattern::{Pattern, PatternRequest, SinglePass, pattern};
 pub use roughing::{Coincident, EscapeSpeed, LevelOrigin, Monotony, RoughRequest, Roughing, rough};
+pub use semi_finish::{SemiFinished, rough_and_semi_finish};
 pub use single::{
     BoxCycle, BoxRequest, FirstAxis, ThreadOnce, ThreadOnceRequest, angle_of_start, box_cycle,
     taper_crosses_start, thread_once,
 };
-pub use threading::{Clamp, DepthSchedule, ThreadRequest, Threading, depth_schedule, thread};
+pub use threading::{
+    Clamp, DepthLaw, DepthSchedule, FlankInfeed, ThreadRequest, Threading, depth_schedule, thread,
+};
 
 use turnwright_canon::{Action, Phase, RapidPath, Shape};
 use turnwright_units::{Feed, LeastIncrement, Position, WorkTip};

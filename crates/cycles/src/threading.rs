@@ -1,17 +1,19 @@
 //! Thread cutting in many passes, and what every thread pass has in common.
 //!
 //! In: a [`ThreadRequest`]. Out: pass after pass (infeed along the flank, thread, run-out, out, home), depths from a
-//! [`DepthSchedule`]: equal chip area, never less than the least depth, the finishing allowance last, then spring
-//! passes.
+//! [`DepthSchedule`]: equal chip area and never less than the least depth, or equal steps; the finishing allowance
+//! last, then spring passes. A thread of several starts cuts each depth once a start.
 //!
-//! Not here: the digits of the packed word, several starts (the caller runs the cycle once a start or turns the start
-//! angle), spindle and feed hold. Source: thread cutting, chapter 9 of the cycles.
+//! The finishing path lies where the flank of the first infeed direction leads at full height. Passes on the other
+//! flank are mirrored about that path: mirrored about the start point they would leave a root wider than the tool.
+//!
+//! Not here: the digits of the packed word, spindle and feed hold. Source: thread cutting, chapter 9 of the cycles.
 
 use turnwright_canon::{Action, Phase, Shape};
 use turnwright_units::{Angle, Feed, FeedPerMinute, Lead, Length, Position, Radius, WorkTip};
 
 use crate::plane::{Plane, in_range};
-use crate::{Context, CutAlong, CycleMove, Misuse, Tool, pass_number};
+use crate::{Context, CutAlong, CycleMove, Misuse, Tool, angle_of_start, pass_number};
 
 /// What happens to the depths once a pass would take less than the least depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +23,53 @@ pub enum Clamp {
     /// Each pass goes at least the least depth below where the *formula* had the one before: after two clamped passes
     /// steps shrink again.
     Formula,
+}
+
+/// How depths grow from pass to pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DepthLaw {
+    /// With the root of the pass number, so that every pass cuts the same chip area.
+    EqualArea(Clamp),
+    /// By the first depth each time.
+    EqualSteps,
+}
+
+/// Where along Z the passes lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FlankInfeed {
+    /// All straight in from the start point.
+    Centre,
+    /// Down the flank that leads in the direction of the cut.
+    WithCut,
+    /// Down the other flank, against the direction of the cut.
+    AgainstCut,
+    /// With the cut, every second pass down the other flank of the same groove.
+    BothFlanks,
+    /// With the cut, every second pass straight above the root.
+    FlankAndCentre,
+}
+
+impl FlankInfeed {
+    /// Way in the direction of the cut per tangent of half the angle: pass from 1, its depth, the full height.
+    fn way(self, pass: u64, depth: f64, height: f64) -> f64 {
+        let is_second = pass.is_multiple_of(2);
+        match self {
+            Self::Centre => 0.0,
+            Self::AgainstCut => -depth,
+            Self::BothFlanks if is_second => 2.0 * height - depth,
+            Self::FlankAndCentre if is_second => height,
+            Self::WithCut | Self::BothFlanks | Self::FlankAndCentre => depth,
+        }
+    }
+
+    /// The furthest way of any pass.
+    const fn reach(self, height: f64) -> f64 {
+        match self {
+            Self::Centre | Self::AgainstCut => 0.0,
+            Self::WithCut | Self::FlankAndCentre => height,
+            Self::BothFlanks => 2.0 * height,
+        }
+    }
 }
 
 /// The words of thread cutting.
@@ -46,14 +95,22 @@ pub struct ThreadRequest {
     pub run_out: Length,
     /// Angle of the run-out from Z, degrees below 90; zero: 45.
     pub run_out_angle_deg: u8,
+    /// How far the run-out leaves the thread, radius; `None`: by the angle.
+    pub run_out_depth: Option<Length>,
+    /// Speed of leaving the thread; `None`: rapid.
+    pub pull_out_feed: Option<FeedPerMinute>,
     /// Angle between the flanks, degrees below 180: the start moves along half of it. Zero: straight in.
     pub nose_angle_deg: u8,
     /// Advance per revolution, along the longer axis of the thread.
     pub lead: Lead,
-    /// Spindle angle at which the passes start.
+    /// Spindle angle at which the passes of the first start begin.
     pub start_angle: Angle,
-    /// Least depth policy.
-    pub clamp: Clamp,
+    /// Threads side by side; 0 counts as 1.
+    pub starts: u32,
+    /// Depths from pass to pass.
+    pub depths: DepthLaw,
+    /// Where along Z the passes lie.
+    pub infeed: FlankInfeed,
 }
 
 /// The depths of a thread's passes below the crest, radius, in millimetres, not rounded.
@@ -63,7 +120,7 @@ pub struct DepthSchedule {
     least: f64,
     cap: f64,
     height: f64,
-    clamp: Clamp,
+    law: DepthLaw,
     /// Roughing passes so far and the depth of the last.
     count: u64,
     depth: f64,
@@ -83,7 +140,7 @@ pub fn depth_schedule(
     min_depth: Radius,
     finishing_allowance: Radius,
     finishing_passes: u32,
-    clamp: Clamp,
+    law: DepthLaw,
 ) -> Result<DepthSchedule, Misuse> {
     in_range(&[height.0, first_depth.0, min_depth.0, finishing_allowance.0])?;
     let refusals = [
@@ -103,7 +160,7 @@ pub fn depth_schedule(
         least: nm(min_depth.0),
         cap: nm((height - finishing_allowance).0),
         height: nm(height.0),
-        clamp,
+        law,
         count: 0,
         depth: 0.0,
         finishing_left: finishing_passes,
@@ -115,9 +172,12 @@ impl DepthSchedule {
     pub fn pass_estimate(&self) -> u64 {
         let ratio = self.cap / self.first;
         let by_area = ratio * ratio;
-        let passes = match self.clamp {
-            Clamp::Accumulate if self.least > 0.0 => by_area.min(self.cap / self.least + 1.0),
-            _ => by_area,
+        let passes = match self.law {
+            DepthLaw::EqualSteps => ratio,
+            DepthLaw::EqualArea(Clamp::Accumulate) if self.least > 0.0 => {
+                by_area.min(self.cap / self.least + 1.0)
+            }
+            DepthLaw::EqualArea(_) => by_area,
         };
         (passes.ceil() as u64).saturating_add(1).saturating_add(u64::from(self.finishing_left))
     }
@@ -138,9 +198,10 @@ impl DepthSchedule {
             return self.first;
         }
         let by_area = |count: u64| self.first * (count as f64).sqrt();
-        let before = match self.clamp {
-            Clamp::Accumulate => self.depth,
-            Clamp::Formula => by_area(self.count - 1),
+        let before = match self.law {
+            DepthLaw::EqualSteps => return self.first * self.count as f64,
+            DepthLaw::EqualArea(Clamp::Accumulate) => self.depth,
+            DepthLaw::EqualArea(Clamp::Formula) => by_area(self.count - 1),
         };
         by_area(self.count).max(before + self.least)
     }
@@ -162,8 +223,13 @@ pub struct Threading {
     height: f64,
     /// Way along Z per depth.
     flank: f64,
+    infeed: FlankInfeed,
     depth: f64,
-    pass: u64,
+    /// Number of the present depth from 1, and of the start that is being cut from 0.
+    depth_number: u64,
+    start: u32,
+    starts: u32,
+    first_angle: Angle,
     part: Part,
     tool: Tool,
 }
@@ -180,7 +246,7 @@ pub fn thread(request: ThreadRequest) -> Result<Threading, Misuse> {
         request.min_depth,
         request.finishing_allowance,
         request.finishing_passes,
-        request.clamp,
+        request.depths,
     )?;
     if request.nose_angle_deg >= 180 {
         return Err(Misuse::NoseAngle);
@@ -193,28 +259,41 @@ pub fn thread(request: ThreadRequest) -> Result<Threading, Misuse> {
         taper: request.taper.0,
         run_out: request.run_out,
         run_out_angle_deg: request.run_out_angle_deg,
-        run_out_depth: None,
-        pull_out_feed: None,
+        run_out_depth: request.run_out_depth,
+        pull_out_feed: request.pull_out_feed,
         lead: request.lead,
         start_angle: request.start_angle,
     })?;
     let height = nm(request.height.0);
-    if flank * height >= line.length.abs() {
+    let reach = flank * request.infeed.reach(height);
+    if reach >= line.length.abs() {
         return Err(Misuse::ThreadTooShort);
     }
     line.outward = if request.context.start.x > request.end.x { 1.0 } else { -1.0 };
     let depth = schedule.next_nm().unwrap_or(height);
-    // The first pass has the least room to run out sideways, the last the shortest thread to do it in.
-    line.fit_run_out(height - depth, flank * height);
-    let tool = Tool::new(request.context.start);
-    Ok(Threading { line, schedule, height, flank, depth, pass: 1, part: Part::Infeed, tool })
+    // The first pass has the least room to run out sideways, the furthest the shortest thread to do it in.
+    line.fit_run_out(height - depth, reach);
+    Ok(Threading {
+        line,
+        schedule,
+        height,
+        flank,
+        infeed: request.infeed,
+        depth,
+        depth_number: 1,
+        start: 0,
+        starts: request.starts.max(1),
+        first_angle: request.start_angle,
+        part: Part::Infeed,
+        tool: Tool::new(request.context.start),
+    })
 }
 
 impl Threading {
     /// No more moves than this.
     pub fn move_estimate(&self) -> u64 {
         // The depth of the first pass has been taken from the schedule already; the estimate counts it still.
-        self.schedule.pass_estimate().saturating_mul(5)
+        self.schedule.pass_estimate().saturating_mul(5).saturating_mul(u64::from(self.starts))
     }
 
     /// The run-out that is made, along Z, when the one asked for does not fit between thread and start point; the
@@ -224,17 +303,30 @@ impl Threading {
     }
 
     fn advance(&mut self) -> Option<CycleMove> {
-        let (stock, advance) = (self.height - self.depth, self.flank * self.depth);
-        let (action, phase) = self.line.step(self.part, stock, advance)?;
-        let step = CycleMove { action, phase, pass: pass_number(self.pass), element: None };
+        let way = self.infeed.way(self.depth_number, self.depth, self.height);
+        let (action, phase) = self.line.step(self.part, self.height - self.depth, self.flank * way)?;
+        let passes_before = (self.depth_number - 1).saturating_mul(u64::from(self.starts));
+        let pass = passes_before.saturating_add(u64::from(self.start) + 1);
+        let step = CycleMove { action, phase, pass: pass_number(pass), element: None };
         self.part = self.part.after();
-        if self.part == Part::Done
-            && let Some(depth) = self.schedule.next_nm()
-        {
-            (self.depth, self.part) = (depth, Part::Infeed);
-            self.pass = self.pass.saturating_add(1);
+        if self.part == Part::Done {
+            self.next_pass();
         }
         Some(step)
+    }
+
+    /// The next start at this depth, else the next depth.
+    fn next_pass(&mut self) {
+        if self.start + 1 < self.starts {
+            self.start += 1;
+        } else if let Some(depth) = self.schedule.next_nm() {
+            (self.start, self.depth) = (0, depth);
+            self.depth_number = self.depth_number.saturating_add(1);
+        } else {
+            return;
+        }
+        self.part = Part::Infeed;
+        self.line.start_angle = angle_of_start(self.first_angle, self.start, self.starts);
     }
 }
 
@@ -478,10 +570,14 @@ mod tests {
             finishing_passes: 2,
             run_out: Length::from_mm(2),
             run_out_angle_deg: 0,
+            run_out_depth: None,
+            pull_out_feed: None,
             nose_angle_deg: 60,
             lead: Lead(Length::from_mm(2)),
             start_angle: Angle::ZERO,
-            clamp: Clamp::Accumulate,
+            starts: 1,
+            depths: DepthLaw::EqualArea(Clamp::Accumulate),
+            infeed: FlankInfeed::WithCut,
         }
     }
 
@@ -519,7 +615,8 @@ mod tests {
     #[test]
     fn both_readings_of_the_least_depth() {
         let depths = |clamp| {
-            let schedule = depth_schedule(um(1_300), um(400), um(100), um(50), 1, clamp).expect("depths");
+            let law = DepthLaw::EqualArea(clamp);
+            let schedule = depth_schedule(um(1_300), um(400), um(100), um(50), 1, law).expect("depths");
             schedule.map(|depth| (depth * 1e4).round() as i64).collect::<Vec<_>>()
         };
         let accumulate = [4_000, 5_657, 6_928, 8_000, 9_000, 10_000, 11_000, 12_000, 12_500, 13_000];
@@ -530,8 +627,56 @@ mod tests {
 
     #[test]
     fn without_allowance_the_finishing_passes_follow_the_full_depth() {
-        let schedule = depth_schedule(um(500), um(600), um(0), um(0), 2, Clamp::Accumulate).expect("depths");
+        let schedule =
+            depth_schedule(um(500), um(600), um(0), um(0), 2, DepthLaw::EqualSteps).expect("depths");
         assert_eq!(schedule.collect::<Vec<_>>(), [0.5, 0.5, 0.5]);
+    }
+
+    #[test]
+    fn equal_steps_go_down_by_the_first_depth() {
+        let law = DepthLaw::EqualSteps;
+        let schedule = depth_schedule(um(1_000), um(300), um(100), um(50), 1, law).expect("depths");
+        let depths = schedule.map(|depth| (depth * 1e4).round() as i64).collect::<Vec<_>>();
+        assert_eq!(depths, [3_000, 6_000, 9_000, 9_500, 10_000]);
+    }
+
+    /// Z where each pass begins, from the start point in the direction of the cut, micrometres.
+    fn ways(infeed: FlankInfeed) -> Vec<i64> {
+        // With 90 degrees the way along Z is the depth: 0.4, 0.8, 1.2, 1.25, 1.3 mm.
+        let depths = DepthLaw::EqualSteps;
+        let asked = ThreadRequest { infeed, depths, nose_angle_deg: 90, finishing_passes: 1, ..request() };
+        let passes = thread(asked).expect("a thread").filter(|step| step.phase == Phase::Infeed);
+        passes
+            .filter_map(|step| step.action.end_point())
+            .map(|to| (Length::from_mm(5) - to.z).nm() / 1_000)
+            .collect()
+    }
+
+    #[test]
+    fn passes_lie_on_the_flanks_that_are_asked_for() {
+        assert_eq!(ways(FlankInfeed::Centre), [0; 5]);
+        assert_eq!(ways(FlankInfeed::WithCut), [400, 800, 1_200, 1_250, 1_300]);
+        assert_eq!(ways(FlankInfeed::AgainstCut), [-400, -800, -1_200, -1_250, -1_300]);
+        // Mirrored about the finishing path at 1.3: as far on one side as on the other.
+        assert_eq!(ways(FlankInfeed::BothFlanks), [400, 1_800, 1_200, 1_350, 1_300]);
+        assert_eq!(ways(FlankInfeed::FlankAndCentre), [400, 1_300, 1_200, 1_300, 1_300]);
+    }
+
+    #[test]
+    fn each_depth_is_cut_once_a_start() {
+        let asked = ThreadRequest { starts: 3, start_angle: Angle::from_millidegrees(90_000), ..request() };
+        let mut passes = Vec::new();
+        for step in thread(asked).expect("a thread").filter(|step| step.phase == Phase::Thread) {
+            if let Action::Thread { to, start_angle, .. } = step.action {
+                passes.push((step.pass, to.x, start_angle.millidegrees()));
+            }
+        }
+        assert_eq!(passes.len(), 33);
+        for (place, (pass, x, angle)) in passes.iter().enumerate() {
+            assert_eq!(*pass as usize, place + 1);
+            assert_eq!(*angle, [90_000, 210_000, 330_000][place % 3]);
+            assert_eq!(*x, passes[place / 3 * 3].1);
+        }
     }
 
     #[test]

@@ -5,15 +5,26 @@
 
 use turnwright_canon::{Action, Phase, RapidPath, Shape, Turn};
 use turnwright_cycles::{
-    BoxRequest, Clamp, Coincident, Context, CutAlong, CycleMove, Element, EscapeSpeed, Figure, FigureMotion,
-    FirstAxis, GrooveRequest, LevelOrigin, Misuse, Monotony, MonotonyFault, PatternRequest, PeckAxis,
-    PlaneAxis, ReliefDirection, RoughRequest, SinglePass, ThreadOnceRequest, ThreadRequest, box_cycle,
-    depth_schedule, groove, monotony_fault, pattern, rough, start_inside_fault, taper_crosses_start, thread,
-    thread_once,
+    BoxRequest, Clamp, Coincident, Context, CutAlong, CycleMove, DepthLaw, Element, EscapeSpeed, Figure,
+    FigureMotion, FirstAxis, FlankInfeed, GrooveRequest, LevelOrigin, Misuse, Monotony, MonotonyFault,
+    PatternRequest, PeckAxis, PlaneAxis, ReliefDirection, RoughRequest, SinglePass, ThreadOnceRequest,
+    ThreadRequest, box_cycle, depth_schedule, groove, monotony_fault, pattern, rough, start_inside_fault,
+    taper_crosses_start, thread, thread_once,
 };
 use turnwright_units::{
     Angle, Feed, FeedPerRevolution, Lead, LeastIncrement, Length, Position, Radius, WorkTip,
 };
+
+const DEPTH_LAWS: [DepthLaw; 3] =
+    [DepthLaw::EqualArea(Clamp::Accumulate), DepthLaw::EqualArea(Clamp::Formula), DepthLaw::EqualSteps];
+
+const INFEEDS: [FlankInfeed; 5] = [
+    FlankInfeed::Centre,
+    FlankInfeed::WithCut,
+    FlankInfeed::AgainstCut,
+    FlankInfeed::BothFlanks,
+    FlankInfeed::FlankAndCentre,
+];
 
 const UNIT: LeastIncrement = LeastIncrement::METRIC_B;
 /// Canonical figures are in thousandths of a millimetre.
@@ -500,16 +511,16 @@ fn grooves_reach_the_bottom_of_every_column_in_small_bites() {
 #[test]
 fn thread_depths_rise_to_the_height_and_areas_shrink() {
     let mut dice = Dice(99);
-    for _ in 0..3_000 {
+    for _ in 0..10_000 {
         let height = dice.between(200, 4_000);
         let first = dice.between(20, 900);
         let least = dice.between(0, height.min(300));
         let allowance = dice.between(0, height / 4);
         let finishing = dice.between(1, 5) as u32;
-        let clamp = dice.pick(&[Clamp::Accumulate, Clamp::Formula]);
+        let law = dice.pick(&DEPTH_LAWS);
         let r = |count| Radius(thousandths(count));
         let schedule =
-            depth_schedule(r(height), r(first), r(least), r(allowance), finishing, clamp).expect("depths");
+            depth_schedule(r(height), r(first), r(least), r(allowance), finishing, law).expect("depths");
         let estimate = schedule.pass_estimate();
         let depths: Vec<f64> = schedule.collect();
         assert!(depths.len() as u64 <= estimate, "{} passes, {estimate} announced", depths.len());
@@ -518,41 +529,77 @@ fn thread_depths_rise_to_the_height_and_areas_shrink() {
         assert!((steps - height as f64 / 1e3).abs() < 1e-9);
         let rough = &depths[..depths.len() - finishing as usize];
         assert!((rough.last().expect("a pass") - (height - allowance) as f64 / 1e3).abs() < 1e-9);
-        for pair in rough[..rough.len() - 1].windows(2) {
-            assert!(pair[1] - pair[0] >= least as f64 / 1e3 - 1e-9 || clamp == Clamp::Formula);
+        assert!(depths[rough.len()..].iter().all(|depth| (depth - height as f64 / 1e3).abs() < 1e-9));
+        let (first, least) = (first as f64 / 1e3, least as f64 / 1e3);
+        assert!((rough[0] - first).abs() < 1e-9 || rough.len() == 1);
+        assert_steps_obey(law, &rough[..rough.len() - 1], first, least);
+    }
+}
+
+/// The steps of all roughing depths but the last, which the allowance cuts short.
+fn assert_steps_obey(law: DepthLaw, depths: &[f64], first: f64, least: f64) {
+    let steps: Vec<f64> = depths.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    match law {
+        DepthLaw::EqualSteps => assert!(steps.iter().all(|step| (step - first).abs() < 1e-9)),
+        DepthLaw::EqualArea(Clamp::Accumulate) => {
+            assert!(steps.iter().all(|step| *step >= least - 1e-9));
+            // Once as small as the least depth, steps stay so.
+            let clamped = steps.iter().position(|step| (step - least).abs() < 1e-9);
+            assert!(steps[clamped.unwrap_or(steps.len())..].iter().all(|step| (step - least).abs() < 1e-9));
+            assert!(steps.windows(2).all(|pair| pair[1] <= pair[0] + 1e-9));
         }
+        DepthLaw::EqualArea(Clamp::Formula) => {
+            for (place, depth) in depths.iter().enumerate().skip(1) {
+                let by_area = |count: usize| first * (count as f64).sqrt();
+                assert!((depth - by_area(place + 1).max(by_area(place) + least)).abs() < 1e-9);
+            }
+        }
+    }
+}
+
+fn thread_request(dice: &mut Dice) -> ThreadRequest {
+    let inside = dice.chance(50);
+    let (root, start_x) = if inside { (20_000, 16_000) } else { (17_400, 25_000) };
+    let sign = dice.pick(&[-1, 1]);
+    let start = Position::new(Radius(thousandths(start_x)), thousandths(sign * 5_000));
+    ThreadRequest {
+        context: context(start),
+        end: Position::new(Radius(thousandths(root)), thousandths(-sign * dice.between(0, 20_000))),
+        taper: Radius::ZERO,
+        height: Radius(thousandths(1_300)),
+        first_depth: Radius(thousandths(dice.between(50, 400))),
+        min_depth: Radius(thousandths(dice.between(0, 100))),
+        finishing_allowance: Radius(thousandths(50)),
+        finishing_passes: 2,
+        run_out: thousandths(dice.between(0, 20_000)),
+        run_out_angle_deg: dice.between(0, 80) as u8,
+        run_out_depth: None,
+        pull_out_feed: None,
+        nose_angle_deg: dice.pick(&[0, 29, 55, 60, 90]),
+        lead: Lead(thousandths(2_000)),
+        start_angle: Angle::ZERO,
+        starts: dice.between(0, 3) as u32,
+        depths: dice.pick(&DEPTH_LAWS),
+        infeed: dice.pick(&INFEEDS),
     }
 }
 
 #[test]
 fn threads_stay_between_root_and_start() {
     let mut dice = Dice(123);
-    for _ in 0..2_000 {
-        let inside = dice.chance(50);
-        let (root, start_x) = if inside { (20_000, 16_000) } else { (17_400, 25_000) };
-        let sign = dice.pick(&[-1, 1]);
-        let start = Position::new(Radius(thousandths(start_x)), thousandths(sign * 5_000));
-        let end = Position::new(Radius(thousandths(root)), thousandths(-sign * dice.between(0, 20_000)));
-        let request = ThreadRequest {
-            context: context(start),
-            end,
-            taper: Radius::ZERO,
-            height: Radius(thousandths(1_300)),
-            first_depth: Radius(thousandths(dice.between(50, 400))),
-            min_depth: Radius(thousandths(dice.between(0, 100))),
-            finishing_allowance: Radius(thousandths(50)),
-            finishing_passes: 2,
-            run_out: thousandths(dice.between(0, 20_000)),
-            run_out_angle_deg: dice.between(0, 80) as u8,
-            nose_angle_deg: dice.pick(&[0, 29, 55, 60, 90]),
-            lead: Lead(thousandths(2_000)),
-            start_angle: Angle::ZERO,
-            clamp: Clamp::Accumulate,
-        };
+    for _ in 0..4_000 {
+        let request = thread_request(&mut dice);
+        let (start, end) = (request.context.start, request.end);
         let cycle = thread(request).expect("a thread");
         assert!(cycle.clone().count() as u64 <= cycle.move_estimate());
         let (low_x, high_x) = (start.x.min(end.x), start.x.max(end.x));
-        let (low_z, high_z) = (start.z.min(end.z), start.z.max(end.z));
+        // Down the flank against the cut a pass begins behind the start point.
+        let behind =
+            if request.infeed == FlankInfeed::AgainstCut { thousandths(1_300) } else { Length::ZERO };
+        let (low_z, high_z) = match start.z < end.z {
+            true => (start.z - behind, end.z),
+            false => (end.z, start.z + behind),
+        };
         for step in cycle {
             let to = step.action.end_point().expect("a move");
             assert!((low_x..=high_x).contains(&to.x) && (low_z..=high_z).contains(&to.z), "{step:?}");
@@ -560,6 +607,23 @@ fn threads_stay_between_root_and_start() {
                 assert_eq!((to.x, to.z), (start.x, end.z));
             }
         }
+    }
+}
+
+/// Every pass at full height takes the same way, whichever flank the passes before it went down.
+#[test]
+fn finishing_passes_follow_one_path() {
+    let mut dice = Dice(77);
+    for _ in 0..2_000 {
+        let request = ThreadRequest { finishing_passes: 4, ..thread_request(&mut dice) };
+        let starts = request.starts.max(1) as usize;
+        let begins: Vec<_> = thread(request)
+            .expect("a thread")
+            .filter(|step| step.phase == Phase::Infeed)
+            .filter_map(|step| step.action.end_point())
+            .collect();
+        let finishing = &begins[begins.len() - 4 * starts..];
+        assert!(finishing.iter().all(|begin| *begin == finishing[0]), "{request:?}");
     }
 }
 
@@ -743,10 +807,14 @@ fn no_thread_or_box_panics_or_runs_away() {
             finishing_passes: if dice.chance(80) { 2 } else { wild(&mut dice) as u32 },
             run_out: mostly_positive(&mut dice),
             run_out_angle_deg: dice.between(0, 100) as u8,
+            run_out_depth: dice.chance(20).then(|| mostly_positive(&mut dice)),
+            pull_out_feed: None,
             nose_angle_deg: dice.between(0, 190) as u8,
             lead: Lead(mostly_positive(&mut dice)),
             start_angle: Angle::from_millidegrees(wild(&mut dice)),
-            clamp: dice.pick(&[Clamp::Accumulate, Clamp::Formula]),
+            starts: if dice.chance(80) { 1 } else { wild(&mut dice) as u32 },
+            depths: dice.pick(&DEPTH_LAWS),
+            infeed: dice.pick(&INFEEDS),
         };
         let cycle = thread(request);
         let estimate = cycle.as_ref().map_or(0, |cycle| cycle.move_estimate());

@@ -6,9 +6,10 @@
 
 use turnwright_canon::{Action, Phase, RapidPath, Shape, Turn};
 use turnwright_cycles::{
-    Clamp, Coincident, Context, CutAlong, CycleMove, Element, EscapeSpeed, Figure, FigureMotion,
-    GrooveRequest, LevelOrigin, Monotony, PatternRequest, PeckAxis, ReliefDirection, RoughRequest,
-    SinglePass, ThreadRequest, groove, monotony_fault, pattern, rough, start_inside_fault, thread,
+    Clamp, Coincident, Context, CutAlong, CycleMove, DepthLaw, Element, EscapeSpeed, Figure, FigureMotion,
+    FlankInfeed, GrooveRequest, LevelOrigin, Monotony, PatternRequest, PeckAxis, ReliefDirection,
+    RoughRequest, SinglePass, ThreadRequest, groove, monotony_fault, pattern, rough, start_inside_fault,
+    thread,
 };
 use turnwright_geometry::{Point, centre_from_radius};
 use turnwright_units::{
@@ -335,7 +336,11 @@ fn thread_cutting() {
         nose_angle_deg: 60,
         lead: Lead(mm(2.0)),
         start_angle: Angle::ZERO,
-        clamp: Clamp::Accumulate,
+        starts: 1,
+        depths: DepthLaw::EqualArea(Clamp::Accumulate),
+        infeed: FlankInfeed::WithCut,
+        run_out_depth: None,
+        pull_out_feed: None,
     };
     assert_moves(thread(request).expect("a cycle"), SCREW);
 }

@@ -2,10 +2,12 @@
 
 use turnwright_canon::{PathMode, SpindleState};
 use turnwright_control::{Axis, Parameters};
+use turnwright_cycles::FlankInfeed;
 use turnwright_units::{LeastIncrement, Length, Position, Radius, Rpm, SurfaceSpeed, WorkTip};
 
 use crate::axes::Plane;
 use crate::functions::FunctionId;
+use crate::functions::multi_thread::RunOutWords;
 use crate::in_force::InForce;
 use crate::offsets::{OffsetInForce, OffsetSettings};
 
@@ -160,6 +162,7 @@ pub(crate) struct Settings {
     pub(crate) thread_pull_out_feed: Option<Length>,
     pub(crate) run_out_tenths: u32,
     pub(crate) run_out_angle_deg: u8,
+    pub(crate) one_block_form: bool,
     pub(crate) cut_depth: Length,
     pub(crate) cut_escape: Length,
     pub(crate) pattern_relief_x: Radius,
@@ -170,6 +173,12 @@ pub(crate) struct Settings {
     pub(crate) thread_nose_angle_deg: u8,
     pub(crate) thread_minimum_depth: Radius,
     pub(crate) thread_finishing_allowance: Radius,
+    /// What data blocks of the threading cycle write beside parameters.
+    pub(crate) thread_infeed: FlankInfeed,
+    pub(crate) thread_starts: u32,
+    pub(crate) thread_run_out_words: RunOutWords,
+    pub(crate) enhanced_thread_infeed: FlankInfeed,
+    pub(crate) enhanced_thread_equal_steps: bool,
     pub(crate) figure_check: bool,
     pub(crate) monotony_check: bool,
     pub(crate) type_by_first_block: bool,
@@ -293,6 +302,7 @@ impl Settings {
             thread_pull_out_feed: Some(mm("thread-pull-out-feed")).filter(|feed| feed.signum() > 0),
             run_out_tenths: count("thread-run-out"),
             run_out_angle_deg: count("thread-run-out-angle").min(89) as u8,
+            one_block_form: bit("one-block-cycle-form"),
             cut_depth: mm("cycle-depth-of-cut"),
             cut_escape: mm("cycle-escape"),
             pattern_relief_x: Radius(mm("pattern-relief-x")),
@@ -303,6 +313,16 @@ impl Settings {
             thread_nose_angle_deg: count("thread-nose-angle").min(120) as u8,
             thread_minimum_depth: Radius(mm("thread-minimum-depth")),
             thread_finishing_allowance: Radius(mm("thread-finishing-allowance")),
+            thread_infeed: FlankInfeed::WithCut,
+            thread_starts: 1,
+            thread_run_out_words: RunOutWords::default(),
+            enhanced_thread_infeed: match count("thread-flank-mode") {
+                0 => FlankInfeed::Centre,
+                1 => FlankInfeed::AgainstCut,
+                2 => FlankInfeed::WithCut,
+                _ => FlankInfeed::BothFlanks,
+            },
+            enhanced_thread_equal_steps: count("thread-depth-mode") == 0,
             figure_check: bit("figure-check"),
             monotony_check: bit("monotony-check"),
             type_by_first_block: bit("type-by-first-block"),

@@ -2,7 +2,8 @@
 
 use turnwright_canon::{Action, Command, Curve, CycleLabel, CycleOrigin, Origin, RapidPath, Shape, Turn};
 use turnwright_cycles::{
-    BoxCycle, CycleMove, Element, FigureMotion, Groove, Pattern, Roughing, ThreadOnce, Threading,
+    BoxCycle, CycleMove, Element, FigureMotion, Groove, Pattern, Roughing, SemiFinished, ThreadOnce,
+    Threading,
 };
 use turnwright_diagnostics::Diagnostic;
 use turnwright_units::{Feed, FeedPerMinute, FeedPerRevolution, Position, WorkTip};
@@ -32,6 +33,7 @@ pub(crate) struct ActiveCycle {
 #[derive(Debug)]
 pub(crate) enum CycleMoves {
     Roughing(Box<Roughing>),
+    SemiFinished(Box<SemiFinished>),
     Pattern(Box<Pattern>),
     Groove(Box<Groove>),
     Threading(Box<Threading>),
@@ -43,6 +45,7 @@ impl CycleMoves {
     fn next(&mut self) -> Option<CycleMove> {
         match self {
             Self::Roughing(cycle) => cycle.next(),
+            Self::SemiFinished(cycle) => cycle.next(),
             Self::Pattern(cycle) => cycle.next(),
             Self::Groove(cycle) => cycle.next(),
             Self::Threading(cycle) => cycle.next(),
@@ -54,6 +57,7 @@ impl CycleMoves {
     fn estimate(&self) -> u64 {
         match self {
             Self::Roughing(cycle) => cycle.move_estimate(),
+            Self::SemiFinished(cycle) => cycle.move_estimate(),
             Self::Pattern(cycle) => cycle.move_estimate(),
             Self::Groove(cycle) => cycle.move_estimate(),
             Self::Threading(cycle) => cycle.move_estimate(),

@@ -5,7 +5,7 @@ mod support;
 use support::{Conditions, Run, run_on};
 use turnwright_control::Control;
 use turnwright_control::policy::{
-    FeedPerRevolution, MissingPoint, NestedComment, OneShotWithMotion, Policies, RepeatedAddress,
+    CycleForm, FeedPerRevolution, MissingPoint, NestedComment, OneShotWithMotion, Policies, RepeatedAddress,
     SpeedLimitAtReset, StoppingCodes,
 };
 
@@ -87,4 +87,19 @@ fn a_program_without_o_takes_its_first_sequence_number() {
     };
     assert_eq!(number("fanuc-0i-tc"), [Some(1234); 3]);
     assert_eq!(number("fanuc-0i-td"), [None; 3]);
+}
+
+#[test]
+fn cycles_may_be_read_in_one_form_only() {
+    let one = "G0 X50. Z2. M3 S500\nG75 X40. I5. F0.1\nM30\n";
+    let two = "G0 X50. Z2. M3 S500\nG75 X40. P5000 F0.1\nM30\n";
+    let run = |text: &str, is_one_block: &str| {
+        let conditions = Conditions::on("fanuc-0i-tf").with("0001#1", is_one_block);
+        let mut control = Control::load("fanuc-0i-tf").expect("a control");
+        control.policies.cycle_form = CycleForm::ByParameter;
+        run_on(control, text.as_bytes(), &conditions).diagnostics()
+    };
+    assert_eq!(run(one, "0"), "alarm PS0066 cycle-word-illegal 2:10-13\n");
+    assert_eq!(run(two, "1"), "alarm PS0066 cycle-word-illegal 2:10-15\n");
+    assert_eq!((run(one, "1"), run(two, "0")), (String::new(), String::new()));
 }

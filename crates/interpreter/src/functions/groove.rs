@@ -3,17 +3,19 @@
 //! `G74 R(e)`, then `G74 X(U)_ Z(W)_ P(Δi) Q(Δk) R(Δd) F_`. The block with an end point runs the cycle, the one
 //! without stores the return e (radius). P belongs to X and Q to Z: one is the peck, the other the step to
 //! the next groove. Both are whole numbers of least increments without sign, or millimetres by parameter; P is
-//! a radius or a diameter by the control. Δd is the relief at the bottom.
+//! a radius or a diameter by the control, and so is the relief Δd at the bottom of the face cycle. In one block
+//! (`one_block.rs`) I is the distance along X, K that along Z, D the relief.
 //!
 //! Without X and P the face cycle is a drilling cycle.
 //!
 //! Source: face and radial peck cycles of both families.
 
-use turnwright_control::policy::{GrooveReliefAlone, GrooveWords};
+use turnwright_control::policy::{CycleIntegerWords, GrooveReliefAlone, GrooveWords as GrooveWordsAre};
 use turnwright_cycles as cycles;
 use turnwright_syntax::Word;
 use turnwright_units::{Length, Position};
 
+use super::one_block::Form;
 use super::{Function, letters};
 use crate::block::Call;
 use crate::machine::Core;
@@ -32,55 +34,89 @@ pub(super) static RADIAL_GROOVE: Function =
 
 fn groove(core: &mut Core, call: &mut Call<'_>, peck_axis: cycles::PeckAxis) -> Result<(), Alarm> {
     core.refuse_comma_words(call.block)?;
-    let has_end = call.block.present() & super::AXES != 0;
-    if let Some(word) = call.block.word(b'D').or(call.block.word(b'I')).or(call.block.word(b'K')) {
-        return Err(if has_end { core.one_block_form(word) } else { core.alarm("cycle-word-illegal", word) });
+    if call.block.present() & super::AXES != 0 {
+        let form = core.cycle_form(call.block, b"DIK")?;
+        return core.run_groove(call, peck_axis, form);
     }
-    if has_end {
-        return core.run_groove(call, peck_axis);
-    }
-    core.refuse_letters(call.block, b"PQ")?;
+    core.refuse_letters(call.block, b"PQDIK")?;
     if let Some(word) = call.block.word(b'R') {
         core.settings.groove_return = core.unsigned_length(word)?;
+        core.missing_point(word);
     }
     Ok(())
 }
 
+/// The distances of the block that cuts, as its words have them; along X a radius.
+struct GrooveWords {
+    cross: Option<Length>,
+    lengthwise: Option<Length>,
+    relief: Length,
+    relief_letter: u8,
+}
+
 impl Core {
-    /// P or Q: a length without sign.
-    fn groove_length(&self, word: &Word) -> Result<Length, Alarm> {
-        let length = self.cycle_length(word)?;
+    fn groove_words(&mut self, call: &Call<'_>, along_z: bool, form: Form) -> Result<GrooveWords, Alarm> {
+        let block = call.block;
+        if form == Form::TwoBlocks {
+            self.refuse_letters(block, b"DIK")?;
+            let halved = self.control.policies.groove_words == GrooveWordsAre::Diameter;
+            let radial = |length: Length| if halved { length.half() } else { length };
+            let unsigned = |letter| {
+                block.word(letter).map(|word| self.no_step_back(word, self.cycle_length(word)?)).transpose()
+            };
+            let (cross, lengthwise) = (unsigned(b'P')?.map(radial), unsigned(b'Q')?);
+            let relief = self.optional_length(block, b'R')?;
+            let relief = if along_z { radial(relief) } else { relief };
+            return Ok(GrooveWords { cross, lengthwise, relief, relief_letter: b'R' });
+        }
+        self.refuse_letters(block, b"PQR")?;
+        let unsigned =
+            |letter| block.word(letter).map(|word| self.no_step_back(word, self.length(word)?)).transpose();
+        let (cross, lengthwise) = (unsigned(b'I')?, unsigned(b'K')?);
+        for word in [block.word(b'I'), block.word(b'K')].into_iter().flatten() {
+            self.missing_point(word);
+        }
+        let relief = block.word(b'D').map_or(Ok(Length::ZERO), |word| self.one_block_depth(word, form))?;
+        Ok(GrooveWords { cross, lengthwise, relief, relief_letter: b'D' })
+    }
+
+    fn no_step_back(&self, word: &Word, length: Length) -> Result<Length, Alarm> {
         if length.signum() < 0 { Err(self.alarm("groove-step-negative", word)) } else { Ok(length) }
     }
 
-    fn run_groove(&mut self, call: &mut Call<'_>, peck_axis: cycles::PeckAxis) -> Result<(), Alarm> {
+    fn run_groove(
+        &mut self,
+        call: &mut Call<'_>,
+        peck_axis: cycles::PeckAxis,
+        form: Form,
+    ) -> Result<(), Alarm> {
         let (start, end) = (self.modal.position, self.target(call.block)?);
-        let halved = self.control.policies.groove_words == GrooveWords::Diameter;
-        let radial = |length: Length| if halved { length.half() } else { length };
-        let cross = call.block.word(b'P').map(|word| self.groove_length(word)).transpose()?.map(radial);
-        let lengthwise = call.block.word(b'Q').map(|word| self.groove_length(word)).transpose()?;
-        let relief = call.block.word(b'R').map(|word| self.length(word)).transpose()?.unwrap_or(Length::ZERO);
+        let along_z = peck_axis == cycles::PeckAxis::Z;
+        let words = self.groove_words(call, along_z, form)?;
         let Some(feed) = self.feed_in_force() else {
             return Err(self.alarm_at("feed-missing", call.word));
         };
-        let along_z = peck_axis == cycles::PeckAxis::Z;
-        let (peck, step, peck_letters) =
-            if along_z { (lengthwise, cross, letters(b"ZW")) } else { (cross, lengthwise, letters(b"XU")) };
+        let (peck, step, peck_letters) = if along_z {
+            (words.lengthwise, words.cross, letters(b"ZW"))
+        } else {
+            (words.cross, words.lengthwise, letters(b"XU"))
+        };
         if call.block.present() & peck_letters == 0 {
             return Err(self.alarm_at("groove-end-missing", call.word));
         }
         if peck.is_none_or(Length::is_zero) {
-            return Err(self.alarm_at("groove-step-zero", call.word));
+            if form != Form::OneBlockRecognised {
+                return Err(self.alarm_at("groove-step-zero", call.word));
+            }
+            self.warn_block("groove-step-omitted");
         }
         self.check_spindle();
         let shifts = if along_z { end.x != start.x } else { end.z != start.z };
-        if !relief.is_zero()
-            && shifts
-            && let Some(word) = call.block.word(b'R')
+        if !words.relief.is_zero()
+            && let Some(word) = call.block.word(words.relief_letter)
         {
             self.warn("relief-into-full-groove", word);
         }
-        let relief = self.relief(relief, along_z, shifts);
         let request = cycles::GrooveRequest {
             context: self.cycle_context(feed),
             peck_axis,
@@ -88,7 +124,7 @@ impl Core {
             peck,
             step,
             retract: self.settings.groove_return,
-            relief,
+            relief: self.relief(words.relief, shifts),
             relief_direction: match self.control.policies.groove_relief_alone {
                 _ if shifts => cycles::ReliefDirection::AgainstShift,
                 GrooveReliefAlone::BySign => cycles::ReliefDirection::BySign,
@@ -99,12 +135,9 @@ impl Core {
         self.start_cycle(CycleMoves::Groove(Box::new(groove)), call.code, Vec::new(), 0)
     }
 
-    /// The relief as a radius; where the control takes its amount only, without its sign.
-    fn relief(&self, relief: Length, along_z: bool, shifts: bool) -> Length {
-        let halved = along_z && self.control.policies.groove_words == GrooveWords::Diameter;
-        let relief = if halved { relief.half() } else { relief };
-        let takes_amount = self.control.policies.cycle_integer_words
-            == turnwright_control::policy::CycleIntegerWords::ByUnitParameter;
+    /// Some controls take only the amount of a relief whose direction is fixed.
+    fn relief(&self, relief: Length, shifts: bool) -> Length {
+        let takes_amount = self.control.policies.cycle_integer_words == CycleIntegerWords::ByUnitParameter;
         if shifts && takes_amount { relief.abs() } else { relief }
     }
 }

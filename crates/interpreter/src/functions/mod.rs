@@ -21,7 +21,8 @@ mod machine_coordinates;
 mod macro_call;
 mod measuring;
 mod modes;
-mod multi_thread;
+pub(crate) mod multi_thread;
+mod one_block;
 mod path_mode;
 mod pattern;
 mod plane_arc;
@@ -328,6 +329,7 @@ static ALL: &[&Function] = &[
     &groove::FACE_GROOVE,
     &groove::RADIAL_GROOVE,
     &multi_thread::MULTI_THREAD,
+    &multi_thread::ENHANCED_THREAD,
     &macro_call::MACRO_CALL,
     &macro_call::MODAL_MACRO_CALL,
     &macro_call::MACRO_CALL_EACH_BLOCK,

@@ -1,19 +1,36 @@
-//! `multi-thread` — a thread in many passes (G76; G78 in system C).
+//! `multi-thread`, `enhanced-thread` — a thread in many passes (G76; G78 in system C; G78 of the 988 series).
 //!
 //! `G76 P(m)(r)(a) Q(Δdmin) R(d)`, then `G76 X(U)_ Z(W)_ R(i) P(k) Q(Δd) F(L)`. The block with an end point runs
 //! the cycle, the one without stores its values in the parameters: m finishing passes, run-out r in tenths of
 //! the lead, nose angle a (two digits each), least depth, finishing allowance. k is the height, Δd the first
 //! depth, both without sign in least increments (or millimetres by parameter), i the taper as a radius with
-//! sign. X is the root of an outside thread, the major diameter of an inside one.
+//! sign. X is the root of an outside thread, the major diameter of an inside one. What fewer digits than six mean is a
+//! policy.
+//!
+//! In one block (`one_block.rs`): `G76 X(U)_ Z(W)_ I(i) K(k) D(Δd) A(a) F(L) P_ Q_`. A is a whole angle up to 120, P
+//! the method: 1 down one flank in equal areas (as without P), 2 down both flanks in turn, 3 and 4 the same in equal
+//! depths; Q is the start angle.
+//!
+//! **Further words of GSK.** On the 980 series J and K in the block that stores are the run-out across and along, on
+//! the 988 series in the block that cuts; they stay in force in place of r until r is written again. J zero is no
+//! run-out; J alone is as long as deep there, here straight out. The 988 series stores D as well (0 down one flank, 1
+//! every second pass over the root, 2 both flanks in turn) and L, the number of starts: each depth is cut once a start,
+//! the starts a share of the turn apart.
+//!
+//! `enhanced-thread` has the words of G76 without D and L; parameters choose flank (5144) and depths (5145), and
+//! steps clamped by the least depth stay equal.
 //!
 //! Source: multiple thread cutting cycle of both families.
 
-use turnwright_control::policy::{ThreadAngles, ThreadDepthClamp};
+use turnwright_control::policy::{MultiThreadWords, ThreadAngles, ThreadDepthClamp, ThreadDigits};
 use turnwright_cycles as cycles;
 use turnwright_syntax::{Block, Word};
-use turnwright_units::{Angle, Feed, FeedPerRevolution, Radius};
+use turnwright_units::{
+    Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position, Radius, WorkTip,
+};
 
 use super::Function;
+use super::one_block::Form;
 use crate::block::Call;
 use crate::machine::Core;
 use crate::moves::CycleMoves;
@@ -21,23 +38,76 @@ use crate::report::Alarm;
 use crate::words::Role;
 
 pub(super) static MULTI_THREAD: Function =
-    Function::one_shot("multi-thread", multi_thread).with_letters(b"PQRDIKA").with_lead().multiple_cycle();
+    Function::one_shot("multi-thread", |core, call| multi_thread(core, call, Cycle::Common))
+        .with_letters(b"PQRDIJKLAE")
+        .with_lead()
+        .multiple_cycle();
+
+pub(super) static ENHANCED_THREAD: Function =
+    Function::one_shot("enhanced-thread", |core, call| multi_thread(core, call, Cycle::Enhanced))
+        .with_letters(b"PQRDIJKLAE")
+        .with_lead()
+        .multiple_cycle();
+
+/// Which of the two cycles: they differ in where flank and depths come from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Cycle {
+    Common,
+    Enhanced,
+}
 
 /// Nose angles of the controls that list them.
 const LISTED_ANGLES: [u32; 6] = [0, 29, 30, 55, 60, 80];
+/// Largest angle of the form in one block.
+const ANGLE_MAX_DEG: u32 = 120;
+/// Most starts that L may ask for.
+const STARTS_MAX: u32 = 999;
 
-fn multi_thread(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
+/// J and K of threading cycles: how deep and how long the run-out is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct RunOutWords {
+    pub(crate) depth: Option<Length>,
+    pub(crate) length: Option<Length>,
+}
+
+/// The words of the block that cuts.
+struct ThreadWords {
+    taper: Radius,
+    height: Radius,
+    first_depth: Radius,
+    nose_angle_deg: u8,
+    start_angle: Angle,
+    depths: cycles::DepthLaw,
+    infeed: cycles::FlankInfeed,
+}
+
+fn multi_thread(core: &mut Core, call: &mut Call<'_>, cycle: Cycle) -> Result<(), Alarm> {
     core.refuse_comma_words(call.block)?;
-    let has_end = call.block.present() & super::AXES != 0;
-    let one_block = b"DIKA".iter().find_map(|letter| call.block.word(*letter));
-    if let Some(word) = one_block {
-        return Err(if has_end { core.one_block_form(word) } else { core.alarm("cycle-word-illegal", word) });
+    if call.block.present() & super::AXES == 0 {
+        return core.store_multi_thread(call.block, cycle);
     }
-    if has_end { core.run_multi_thread(call) } else { core.store_multi_thread(call.block) }
+    let form = core.cycle_form(call.block, b"DIKA")?;
+    core.refuse_letters(call.block, core.foreign_thread_letters(form))?;
+    let words = if form == Form::TwoBlocks {
+        core.thread_words(call, cycle)?
+    } else {
+        core.thread_words_in_one_block(call, form)?
+    };
+    core.run_multi_thread(call, words)
 }
 
 impl Core {
-    fn store_multi_thread(&mut self, block: &Block) -> Result<(), Alarm> {
+    fn store_multi_thread(&mut self, block: &Block, cycle: Cycle) -> Result<(), Alarm> {
+        let words = self.control.policies.multi_thread_words;
+        self.refuse_letters(
+            block,
+            match (words, cycle) {
+                (MultiThreadWords::Plain, _) => b"DIJKLAE",
+                (MultiThreadWords::RunOutInData, _) => b"DILAE",
+                (MultiThreadWords::FlanksAndStarts, Cycle::Common) => b"IJKAE",
+                (MultiThreadWords::FlanksAndStarts, Cycle::Enhanced) => b"DIJKLAE",
+            },
+        )?;
         if let Some(word) = block.word(b'P') {
             self.store_thread_digits(word)?;
         }
@@ -52,10 +122,34 @@ impl Core {
             self.settings.thread_finishing_allowance = Radius(self.unsigned_length(word)?);
             self.missing_point(word);
         }
+        if let Some(word) = block.word(b'D') {
+            self.settings.thread_infeed = match self.whole(word, 99)? {
+                0 => cycles::FlankInfeed::WithCut,
+                1 => cycles::FlankInfeed::FlankAndCentre,
+                2 => cycles::FlankInfeed::BothFlanks,
+                _ => return Err(self.alarm("thread-method-illegal", word)),
+            };
+        }
+        if let Some(word) = block.word(b'L') {
+            self.settings.thread_starts = match self.whole(word, 99_999_999)? {
+                starts @ 1..=STARTS_MAX => starts,
+                _ => return Err(self.alarm("thread-starts-illegal", word)),
+            };
+        }
+        self.store_run_out(block)
+    }
+
+    /// J and K stay in force; r written after them takes their place.
+    fn store_run_out(&mut self, block: &Block) -> Result<(), Alarm> {
+        let depth = block.word(b'J').map(|word| self.unsigned_length(word)).transpose()?;
+        let length = block.word(b'K').map(|word| self.unsigned_length(word)).transpose()?;
+        let words = &mut self.settings.thread_run_out_words;
+        words.depth = depth.or(words.depth);
+        words.length = length.or(words.length);
         Ok(())
     }
 
-    /// `P mmrraa`: parts that are not written keep their values.
+    /// `P mmrraa`.
     fn store_thread_digits(&mut self, word: &Word) -> Result<(), Alarm> {
         let value = self.whole(word, 999_999)?;
         let typed = self.number(word)?.typed_digits;
@@ -67,9 +161,23 @@ impl Core {
         if !is_allowed {
             return Err(self.alarm("thread-angle-illegal", word));
         }
+        let has_run_out = match self.control.policies.thread_digits {
+            ThreadDigits::LeadingZeros => {
+                if typed < 5 && value < 10_000 {
+                    self.warn("thread-digits-short", word);
+                }
+                true
+            }
+            ThreadDigits::PartsWritten => typed > 2 || value > 99,
+            ThreadDigits::AllParts if typed < 5 && value < 10_000 => {
+                return Err(self.alarm("thread-digits-missing", word));
+            }
+            ThreadDigits::AllParts => true,
+        };
         self.settings.thread_nose_angle_deg = angle as u8;
-        if typed > 2 || value > 99 {
+        if has_run_out {
             self.settings.run_out_tenths = run_out;
+            self.settings.thread_run_out_words = RunOutWords::default();
         }
         if passes > 0 {
             self.settings.thread_finishing_passes = passes;
@@ -77,51 +185,137 @@ impl Core {
         Ok(())
     }
 
-    /// P or Q of the block that runs the cycle: more than zero.
-    fn thread_depth(&self, call: &Call<'_>, letter: u8) -> Result<Radius, Alarm> {
+    /// Letters that the block that cuts does not take.
+    const fn foreign_thread_letters(&self, form: Form) -> &'static [u8] {
+        if !matches!(form, Form::TwoBlocks) {
+            return b"RJL";
+        }
+        match self.control.policies.multi_thread_words {
+            MultiThreadWords::Plain => b"DIJKLA",
+            MultiThreadWords::RunOutInData => b"DJKLAE",
+            MultiThreadWords::FlanksAndStarts => b"DLAE",
+        }
+    }
+
+    /// P, Q and R of the block that cuts.
+    fn thread_words(&mut self, call: &Call<'_>, cycle: Cycle) -> Result<ThreadWords, Alarm> {
+        let positive = |letter| self.thread_depth(call, letter, |word| self.cycle_length(word));
+        let (height, first_depth) = (positive(b'P')?, positive(b'Q')?);
+        self.store_run_out(call.block)?;
+        let clamp = match self.control.policies.thread_depth_clamp {
+            ThreadDepthClamp::Formula if cycle == Cycle::Common => cycles::Clamp::Formula,
+            ThreadDepthClamp::Accumulate | ThreadDepthClamp::Formula => cycles::Clamp::Accumulate,
+        };
+        let settings = &self.settings;
+        let (infeed, depths) = match cycle {
+            Cycle::Common => (settings.thread_infeed, cycles::DepthLaw::EqualArea(clamp)),
+            Cycle::Enhanced if settings.enhanced_thread_equal_steps => {
+                (settings.enhanced_thread_infeed, cycles::DepthLaw::EqualSteps)
+            }
+            Cycle::Enhanced => (settings.enhanced_thread_infeed, cycles::DepthLaw::EqualArea(clamp)),
+        };
+        Ok(ThreadWords {
+            taper: self.thread_taper(call, b'R')?,
+            height,
+            first_depth,
+            nose_angle_deg: self.settings.thread_nose_angle_deg,
+            start_angle: Angle::ZERO,
+            depths,
+            infeed,
+        })
+    }
+
+    /// I, K, D, A, P and Q of the form in one block.
+    fn thread_words_in_one_block(&mut self, call: &Call<'_>, form: Form) -> Result<ThreadWords, Alarm> {
+        let height = self.thread_depth(call, b'K', |word| self.length(word))?;
+        if let Some(word) = call.block.word(b'K') {
+            self.missing_point(word);
+        }
+        let first_depth = match call.block.word(b'D') {
+            Some(word) => self.one_block_depth(word, form)?,
+            None => return Err(self.alarm_at("thread-height-or-depth-illegal", call.word)),
+        };
+        if first_depth.signum() <= 0 {
+            return Err(self.alarm_at("thread-height-or-depth-illegal", call.block.word(b'D')));
+        }
+        let nose_angle_deg = match call.block.word(b'A') {
+            Some(word) => match self.whole(word, 999)? {
+                angle @ 0..=ANGLE_MAX_DEG => angle as u8,
+                _ => return Err(self.alarm("thread-angle-illegal", word)),
+            },
+            None => 0,
+        };
+        let method = call.block.word(b'P').map_or(Ok(1), |word| match self.whole(word, 99)? {
+            method @ 1..=4 => Ok(method),
+            _ => Err(self.alarm("thread-method-illegal", word)),
+        })?;
+        Ok(ThreadWords {
+            taper: self.thread_taper(call, b'I')?,
+            height,
+            first_depth: Radius(first_depth),
+            nose_angle_deg,
+            start_angle: self.start_angle(call)?,
+            depths: match method {
+                1 | 2 => cycles::DepthLaw::EqualArea(cycles::Clamp::Accumulate),
+                _ => cycles::DepthLaw::EqualSteps,
+            },
+            infeed: match method {
+                1 | 3 => cycles::FlankInfeed::WithCut,
+                _ => cycles::FlankInfeed::BothFlanks,
+            },
+        })
+    }
+
+    fn thread_taper(&mut self, call: &Call<'_>, letter: u8) -> Result<Radius, Alarm> {
+        if let Some(word) = call.block.word(letter) {
+            self.missing_point(word);
+        }
+        Ok(self.optional_radius(call.block, letter, Role::TaperRadius)?.unwrap_or(Radius::ZERO))
+    }
+
+    /// A height or depth of the block that cuts: it must be there, and more than zero.
+    fn thread_depth(
+        &self,
+        call: &Call<'_>,
+        letter: u8,
+        length: impl Fn(&Word) -> Result<Length, Alarm>,
+    ) -> Result<Radius, Alarm> {
         let Some(word) = call.block.word(letter) else {
             return Err(self.alarm_at("thread-height-or-depth-illegal", call.word));
         };
-        let depth = self.cycle_length(word)?;
+        let depth = length(word)?;
         if depth.signum() <= 0 {
             return Err(self.alarm("thread-height-or-depth-illegal", word));
         }
         Ok(Radius(depth))
     }
 
-    fn run_multi_thread(&mut self, call: &mut Call<'_>) -> Result<(), Alarm> {
+    fn run_multi_thread(&mut self, call: &mut Call<'_>, words: ThreadWords) -> Result<(), Alarm> {
         let end = self.target(call.block)?;
-        let height = self.thread_depth(call, b'P')?;
-        let first_depth = self.thread_depth(call, b'Q')?;
-        let taper = self.optional_radius(call.block, b'R', Role::TaperRadius)?.unwrap_or(Radius::ZERO);
-        if let Some(word) = call.block.word(b'R') {
-            self.missing_point(word);
-        }
         let lead = self.lead_in_force(call)?;
-        self.check_thread_spindle()?;
-        if (self.modal.position.x - end.x).0.abs() < height.0 {
-            // The crest lies further out than the start: the first infeed would lead away from the work.
-            self.warn_block("thread-start-inside");
-        }
+        self.check_thread(call, lead)?;
+        self.check_thread_place(call, &words, end, lead)?;
+        let (run_out, run_out_depth) = self.multi_thread_run_out(call, lead, end)?;
         let settings = &self.settings;
         let request = cycles::ThreadRequest {
             context: self.cycle_context(Feed::PerRevolution(FeedPerRevolution(lead.0))),
             end,
-            taper,
-            height,
-            first_depth,
+            taper: words.taper,
+            height: words.height,
+            first_depth: words.first_depth,
             min_depth: settings.thread_minimum_depth,
             finishing_allowance: settings.thread_finishing_allowance,
             finishing_passes: settings.thread_finishing_passes,
-            run_out: run_out(lead, settings.run_out_tenths),
+            run_out,
             run_out_angle_deg: settings.run_out_angle_deg,
-            nose_angle_deg: settings.thread_nose_angle_deg,
+            run_out_depth,
+            pull_out_feed: settings.thread_pull_out_feed.map(FeedPerMinute),
+            nose_angle_deg: words.nose_angle_deg,
             lead,
-            start_angle: Angle::ZERO,
-            clamp: match self.control.policies.thread_depth_clamp {
-                ThreadDepthClamp::Accumulate => cycles::Clamp::Accumulate,
-                ThreadDepthClamp::Formula => cycles::Clamp::Formula,
-            },
+            start_angle: words.start_angle,
+            starts: settings.thread_starts,
+            depths: words.depths,
+            infeed: words.infeed,
         };
         let thread = cycles::thread(request).map_err(|fault| self.misuse(fault, call))?;
         if thread.run_out_shortened().is_some() {
@@ -129,9 +323,60 @@ impl Core {
         }
         self.start_cycle(CycleMoves::Threading(Box::new(thread)), call.code, Vec::new(), 0)
     }
+
+    /// Length and depth of the run-out: J and K while they are in force, else tenths of the lead.
+    fn multi_thread_run_out(
+        &mut self,
+        call: &Call<'_>,
+        lead: Lead,
+        end: Position<WorkTip>,
+    ) -> Result<(Length, Option<Length>), Alarm> {
+        let words = self.settings.thread_run_out_words;
+        let (along, depth) = match self.run_out_by_words(words) {
+            Some((along, depth)) => (along, Some(depth)),
+            None => (run_out(lead, self.settings.run_out_tenths), None),
+        };
+        let has_words = self.control.policies.multi_thread_words != MultiThreadWords::Plain;
+        if has_words && along > (end.z - self.modal.position.z).abs() {
+            let word = call.block.word(b'K').or(call.block.word(b'J')).or(call.word);
+            return Err(self.alarm_at("run-out-too-long", word));
+        }
+        Ok((along, depth))
+    }
+
+    /// What a machinist would look at twice before the first pass.
+    fn check_thread_place(
+        &mut self,
+        call: &Call<'_>,
+        words: &ThreadWords,
+        end: Position<WorkTip>,
+        lead: Lead,
+    ) -> Result<(), Alarm> {
+        let start = self.modal.position;
+        self.check_taper(call, cycles::FirstAxis::X, end, words.taper.0)?;
+        let outward = (start.x - end.x).0.signum();
+        let is_too_near = |root: Radius| {
+            let room = (start.x - root).0;
+            room.signum() != outward || room.abs() < words.height.0
+        };
+        if is_too_near(end.x) || is_too_near(end.x + words.taper) {
+            // The crest lies further out than the start: the first infeed would lead away from the work.
+            self.warn_block("thread-start-inside");
+        }
+        // Whether the way from the start to the face is long enough is known only where Z0 is the face.
+        let flank_mm = words.height.to_mm() * libm::tan(f64::from(words.nose_angle_deg).to_radians() / 2.0);
+        let is_from_face = start.z.signum() >= 0 && end.z.signum() < 0;
+        if is_from_face && start.z.to_mm() - flank_mm < LEAD_IN_LEADS * lead.0.to_mm() {
+            self.warn_block("thread-lead-in-short");
+        }
+        Ok(())
+    }
 }
 
+/// The least way of a thread before the work, in leads: the axis has to come up to the spindle's pace.
+const LEAD_IN_LEADS: f64 = 2.0;
+
 /// The run-out: tenths of the lead.
-pub(super) fn run_out(lead: turnwright_units::Lead, tenths: u32) -> turnwright_units::Length {
-    turnwright_units::Length::from_nm(lead.0.nm().saturating_mul(i64::from(tenths)) / 10)
+pub(super) fn run_out(lead: Lead, tenths: u32) -> Length {
+    Length::from_nm(lead.0.nm().saturating_mul(i64::from(tenths)) / 10)
 }

@@ -8,10 +8,11 @@
 
 use turnwright_control::policy::SinglePatternPass;
 use turnwright_cycles as cycles;
-use turnwright_syntax::Block;
+use turnwright_syntax::{Block, Word};
 use turnwright_units::{Length, Radius};
 
 use super::Function;
+use super::one_block::Form;
 use crate::block::Call;
 use crate::machine::Core;
 use crate::moves::CycleMoves;
@@ -26,14 +27,9 @@ const PASSES_MAX: i64 = 9_999;
 
 fn pattern_repeating(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     core.refuse_comma_words(call.block)?;
-    if let Some(word) = call.block.word(b'D').or(call.block.word(b'I')).or(call.block.word(b'K')) {
-        return Err(match call.block.has(b'P') {
-            true => core.one_block_form(word),
-            false => core.alarm("cycle-word-illegal", word),
-        });
-    }
-    if call.block.has(b'P') || call.block.has(b'Q') {
-        core.run_pattern(call)
+    let form = core.cycle_form(call.block, b"DIK")?;
+    if form != Form::TwoBlocks || call.block.has(b'P') || call.block.has(b'Q') {
+        core.run_pattern(call, form)
     } else {
         core.store_pattern(call.block)
     }
@@ -41,7 +37,7 @@ fn pattern_repeating(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> 
 
 impl Core {
     fn store_pattern(&mut self, block: &Block) -> Result<(), Alarm> {
-        self.refuse_letters(block, b"XZ")?;
+        self.refuse_letters(block, b"XZDIK")?;
         if let Some(word) = block.word(b'U') {
             self.settings.pattern_relief_x = self.radius(word, Role::RadialDepth)?;
             self.missing_point(word);
@@ -51,21 +47,37 @@ impl Core {
             self.missing_point(word);
         }
         if let Some(word) = block.word(b'R') {
-            let number = self.number(word)?;
-            let count = number.scaled(0).map_or(0, |(count, _)| count);
-            if !(1..=PASSES_MAX).contains(&count) {
-                return Err(self.alarm("pass-count-illegal", word));
-            }
-            if number.has_point {
-                self.warn("count-with-point", word);
-            }
-            self.settings.pattern_passes = count as u32;
+            self.settings.pattern_passes = self.pattern_passes(word)?;
         }
         Ok(())
     }
 
-    fn run_pattern(&mut self, call: &mut Call<'_>) -> Result<(), Alarm> {
-        self.refuse_letters(call.block, b"XZR")?;
+    fn pattern_passes(&mut self, word: &Word) -> Result<u32, Alarm> {
+        let number = self.number(word)?;
+        let count = number.scaled(0).map_or(0, |(count, _)| count);
+        if !(1..=PASSES_MAX).contains(&count) {
+            return Err(self.alarm("pass-count-illegal", word));
+        }
+        if number.has_point {
+            self.warn("count-with-point", word);
+        }
+        Ok(count as u32)
+    }
+
+    fn run_pattern(&mut self, call: &mut Call<'_>, form: Form) -> Result<(), Alarm> {
+        self.refuse_letters(call.block, if form == Form::TwoBlocks { b"XZRDIK" } else { b"XZR" })?;
+        let settings = &self.settings;
+        let mut relief = (settings.pattern_relief_x, settings.pattern_relief_z);
+        let mut passes = settings.pattern_passes;
+        if form != Form::TwoBlocks {
+            relief.0 = self.optional_radius(call.block, b'I', Role::RadialDepth)?.unwrap_or(relief.0);
+            if call.block.has(b'K') {
+                relief.1 = self.optional_length(call.block, b'K')?;
+            }
+            if let Some(word) = call.block.word(b'D') {
+                passes = self.pattern_passes(word)?;
+            }
+        }
         let allowance_x = self.optional_radius(call.block, b'U', Role::XAllowance)?.unwrap_or(Radius::ZERO);
         let allowance_z =
             call.block.word(b'W').map(|word| self.length(word)).transpose()?.unwrap_or(Length::ZERO);
@@ -75,7 +87,7 @@ impl Core {
         let Some(feed) = self.feed_in_force() else {
             return Err(self.alarm_at("feed-missing", call.word));
         };
-        if self.settings.pattern_passes == 0 {
+        if passes == 0 {
             return Err(self.alarm_at("pass-count-illegal", call.word));
         }
         self.check_spindle();
@@ -84,9 +96,9 @@ impl Core {
         self.warn_allowance_signs(call, &captured.figure, None, (allowance_x, allowance_z));
         let request = cycles::PatternRequest {
             context: self.cycle_context(feed),
-            relief_x: self.settings.pattern_relief_x,
-            relief_z: self.settings.pattern_relief_z,
-            passes: self.settings.pattern_passes,
+            relief_x: relief.0,
+            relief_z: relief.1,
+            passes,
             allowance_x,
             allowance_z,
             single_pass: match self.control.policies.single_pattern_pass {

@@ -2,7 +2,8 @@
 //!
 //! `G71 U(Δd) R(e)`, then `G71 P(ns) Q(nf) U(Δu) W(Δw) F_`. The block with P and Q runs the cycle, the one
 //! without stores depth and escape in the parameters, where they stay. Δd and e are radius values without sign,
-//! Δu is a diameter with sign, Δw a length with sign. G72 has the depth in W and cuts along X.
+//! Δu is a diameter with sign, Δw a length with sign. G72 has the depth in W and cuts along X. The form with
+//! everything in one block is that of `one_block.rs`.
 //!
 //! Type I here: the figure has no pockets and its first block names one axis (X for G71, Z for G72).
 //!
@@ -17,6 +18,7 @@ use turnwright_syntax::Block;
 use turnwright_units::{Length, Position, Radius, WorkTip};
 
 use super::Function;
+use super::one_block::Form;
 use crate::block::Call;
 use crate::figure::Captured;
 use crate::machine::Core;
@@ -38,27 +40,15 @@ const LETTERS: &[u8] = b"PQRDJKI";
 
 fn rough(core: &mut Core, call: &mut Call<'_>, along: cycles::CutAlong) -> Result<(), Alarm> {
     core.refuse_comma_words(call.block)?;
-    if let Some(word) = call.block.word(b'D').or(call.block.word(b'I')) {
-        return Err(match call.block.has(b'P') {
-            true => core.one_block_form(word),
-            false => core.alarm("cycle-word-illegal", word),
-        });
-    }
-    if call.block.has(b'P') || call.block.has(b'Q') {
-        core.run_roughing(call, along)
+    let form = core.cycle_form(call.block, b"DIK")?;
+    if form != Form::TwoBlocks || call.block.has(b'P') || call.block.has(b'Q') {
+        core.run_roughing(call, along, form)
     } else {
         core.store_roughing(call.block, along)
     }
 }
 
 impl Core {
-    /// The form with everything in one block is read in a later version.
-    pub(super) fn one_block_form(&self, word: &turnwright_syntax::Word) -> Alarm {
-        let quote = self.quote(word.start, word.end);
-        let diagnostic = Diagnostic::error("one-block-form-not-supported-yet").at(self.place(word));
-        self.finish(diagnostic.with("word", quote))
-    }
-
     /// Refuses letters that the block in hand does not take.
     pub(super) fn refuse_letters(&self, block: &Block, letters: &[u8]) -> Result<(), Alarm> {
         match letters.iter().find_map(|letter| block.word(*letter)) {
@@ -70,8 +60,8 @@ impl Core {
     /// The block without P and Q.
     fn store_roughing(&mut self, block: &Block, along: cycles::CutAlong) -> Result<(), Alarm> {
         let (depth, foreign): (u8, &[u8]) = match along {
-            cycles::CutAlong::Z => (b'U', b"XZWJK"),
-            cycles::CutAlong::X => (b'W', b"XZUJK"),
+            cycles::CutAlong::Z => (b'U', b"XZWJKDI"),
+            cycles::CutAlong::X => (b'W', b"XZUJKDI"),
         };
         self.refuse_letters(block, foreign)?;
         if let Some(word) = block.word(depth) {
@@ -90,18 +80,26 @@ impl Core {
     }
 
     /// The block with P and Q.
-    fn run_roughing(&mut self, call: &mut Call<'_>, along: cycles::CutAlong) -> Result<(), Alarm> {
+    fn run_roughing(
+        &mut self,
+        call: &mut Call<'_>,
+        along: cycles::CutAlong,
+        form: Form,
+    ) -> Result<(), Alarm> {
         let by_word = self.control.policies.monotony_check == MonotonyCheck::ByWord;
-        self.refuse_letters(call.block, if by_word { b"XZR" } else { b"XZRJK" })?;
+        let foreign: &[u8] = match form {
+            Form::TwoBlocks if by_word => b"XZRDI",
+            Form::TwoBlocks => b"XZRDIJK",
+            Form::OneBlock | Form::OneBlockRecognised => b"XZJ",
+        };
+        self.refuse_letters(call.block, foreign)?;
         let allowance_x = self.optional_radius(call.block, b'U', Role::XAllowance)?.unwrap_or(Radius::ZERO);
         let allowance_z =
             call.block.word(b'W').map(|word| self.length(word)).transpose()?.unwrap_or(Length::ZERO);
         for word in [call.block.word(b'U'), call.block.word(b'W')].into_iter().flatten() {
             self.missing_point(word);
         }
-        if self.settings.cut_depth.signum() <= 0 {
-            return Err(self.alarm_at("cut-depth-illegal", call.word));
-        }
+        let words = self.rough_words(call, form)?;
         let Some(feed) = self.feed_in_force() else {
             return Err(self.alarm_at("feed-missing", call.word));
         };
@@ -115,8 +113,8 @@ impl Core {
         let request = cycles::RoughRequest {
             context: self.cycle_context(feed),
             along,
-            depth: self.settings.cut_depth,
-            escape: self.settings.cut_escape,
+            depth: words.depth,
+            escape: words.escape,
             allowance_x,
             allowance_z,
             coincident: match policies.coincident_level {
@@ -136,8 +134,14 @@ impl Core {
             monotony: cycles::Monotony::Ignore,
         };
         let (lines, behind) = (captured.lines(), captured.behind);
-        let roughing = cycles::rough(captured.figure, request).map_err(|fault| self.misuse(fault, call))?;
-        self.start_cycle(CycleMoves::Roughing(Box::new(roughing)), call.code, lines, 0)?;
+        let figure = captured.figure;
+        let moves = match words.semi_finish {
+            None => cycles::rough(figure, request).map(|cycle| CycleMoves::Roughing(Box::new(cycle))),
+            Some((x, z)) => cycles::rough_and_semi_finish(figure, request, x, z)
+                .map(|cycle| CycleMoves::SemiFinished(Box::new(cycle))),
+        };
+        let moves = moves.map_err(|fault| self.misuse(fault, call))?;
+        self.start_cycle(moves, call.code, lines, 0)?;
         self.go(behind, call.environment)
     }
 

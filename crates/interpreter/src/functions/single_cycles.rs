@@ -21,7 +21,7 @@ use turnwright_control::policy::{RunOutWords, TaperSign, ThreadCycleWords};
 use turnwright_cycles as cycles;
 use turnwright_units::{Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position};
 
-use super::multi_thread::run_out;
+use super::multi_thread::{self, run_out};
 use super::{Function, letters};
 use crate::block::Call;
 use crate::machine::Core;
@@ -161,9 +161,25 @@ impl Core {
         let cycle = &mut self.modal.cycle;
         cycle.run_out_depth = depth.or(cycle.run_out_depth);
         cycle.run_out_length = along.or(cycle.run_out_length);
+        let words = multi_thread::RunOutWords { depth: cycle.run_out_depth, length: cycle.run_out_length };
+        let is_face_thread = cycle.is_face_thread;
+        let Some((along, depth)) = self.run_out_by_words(words) else {
+            return Ok((run_out(lead, self.settings.run_out_tenths), None));
+        };
+        let way = end - self.modal.position;
+        let thread = if is_face_thread { way.x.0 } else { way.z };
+        if along > thread.abs() {
+            let word = call.block.word(b'K').or(call.block.word(b'J')).or(call.word);
+            return Err(self.alarm_at("run-out-too-long", word));
+        }
+        Ok((along, Some(depth)))
+    }
+
+    /// Length and depth of the run-out that J and K ask for.
+    pub(super) fn run_out_by_words(&self, words: multi_thread::RunOutWords) -> Option<(Length, Length)> {
         let straight = self.control.policies.run_out_words == RunOutWords::StraightOut;
-        let (along, depth) = match (cycle.run_out_depth, cycle.run_out_length) {
-            (None, None) => return Ok((run_out(lead, self.settings.run_out_tenths), None)),
+        Some(match (words.depth, words.length) {
+            (None, None) => return None,
             (None, Some(along)) => (along, along),
             (Some(depth), along) => match along.filter(|along| !along.is_zero()) {
                 _ if depth.is_zero() => (Length::ZERO, depth),
@@ -171,14 +187,7 @@ impl Core {
                 None if straight => (Length::ZERO, depth),
                 None => (depth, depth),
             },
-        };
-        let way = end - self.modal.position;
-        let thread = if cycle.is_face_thread { way.x.0 } else { way.z };
-        if along > thread.abs() {
-            let word = call.block.word(b'K').or(call.block.word(b'J')).or(call.word);
-            return Err(self.alarm_at("run-out-too-long", word));
-        }
-        Ok((along, Some(depth)))
+        })
     }
 
     /// Counts the passes that begin; gives how many there were.
@@ -188,7 +197,7 @@ impl Core {
         before
     }
 
-    fn check_taper(
+    pub(super) fn check_taper(
         &mut self,
         call: &Call<'_>,
         first: cycles::FirstAxis,
