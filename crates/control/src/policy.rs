@@ -318,6 +318,8 @@ policies! {
     type_two: TypeTwo {
         /// It exists.
         Available,
+        /// It exists in rough turning; rough facing refuses it.
+        TurningOnly,
         /// It is an option that this control does not have.
         Alarm,
     }
@@ -337,6 +339,35 @@ policies! {
     }
     /// Speed of the 45-degree escape after a roughing pass.
     escape_speed: EscapeSpeed {
+        /// Cutting feed.
+        Feed,
+        /// Rapid traverse.
+        Rapid,
+    }
+    /// The pass along the figure at the end of roughing with pockets.
+    pocket_semi_finish: PocketSemiFinish {
+        /// It is made unless the parameter leaves it out.
+        ByParameter,
+        /// Only with the word J1 in the block that runs the cycle.
+        ByWord,
+    }
+    /// The flat top between two pockets, when it lies between two levels. From figures of the manuals; where there
+    /// was none to read, the first.
+    flat_hump: FlatHump {
+        /// It is cut along with the climb out of the first pocket.
+        AlongContour,
+        /// The first pocket is finished, then one cut at its height goes on to the far wall.
+        ExtraLevel,
+    }
+    /// How a cut that ends on a bottom parallel to it is left when roughing with pockets.
+    bottom_escape: BottomEscape {
+        /// Along the figure.
+        Follow,
+        /// At 45 degrees, unless the parameter for following it is set. Known at second hand.
+        ByParameter,
+    }
+    /// Speed of the small way off the figure at the end of a pass when roughing with pockets. No source gives it.
+    pocket_lift_speed: PocketLiftSpeed {
         /// Cutting feed.
         Feed,
         /// Rapid traverse.

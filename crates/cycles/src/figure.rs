@@ -75,6 +75,33 @@ pub struct MonotonyFault {
     pub element: u32,
 }
 
+/// How far each axis of a figure may turn back without being taken for turning back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tolerance {
+    /// Along X.
+    pub x: Radius,
+    /// Along Z.
+    pub z: Length,
+}
+
+impl Tolerance {
+    /// None at all.
+    pub const EXACT: Self = Self::both(Length::ZERO);
+
+    /// The same on both axes.
+    pub const fn both(length: Length) -> Self {
+        Self { x: Radius(length), z: length }
+    }
+
+    /// (along the cut, along the depth axis), nanometres.
+    fn split(self, along: CutAlong) -> (i64, i64) {
+        match along {
+            CutAlong::Z => (self.z.nm(), self.x.0.nm()),
+            CutAlong::X => (self.x.0.nm(), self.z.nm()),
+        }
+    }
+}
+
 /// A figure that reaches beyond the start point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StartFault {
@@ -216,6 +243,48 @@ pub(crate) fn lead_in(figure: &Figure, plane: &Plane) -> Option<LeadIn> {
     Some(lead)
 }
 
+/// Finds the approach of a figure with pockets. What is cut before the tool has gone straight down belongs to the
+/// contour: then there is no approach and nothing is open to the start.
+pub(crate) fn pocket_lead_in(figure: &Figure, plane: &Plane) -> Option<LeadIn> {
+    let first = figure.elements.first()?;
+    let (start, to) = (plane.split(figure.start), plane.split(first.to));
+    let is_rapid = first.motion == FigureMotion::Rapid;
+    let goes_straight = to.1 == start.1 && !matches!(first.motion, FigureMotion::Arc { .. });
+    let mut lead = match (is_rapid, goes_straight) {
+        (_, true) => lead_in(figure, plane)?,
+        (true, false) => LeadIn { elements: 1, depth_sign: (to.0 - start.0).signum(), rapid: true, end: to },
+        (false, false) => LeadIn { elements: 0, depth_sign: 0, rapid: false, end: start },
+    };
+    if lead.depth_sign == 0 {
+        // Depth lies where the contour reaches furthest.
+        let pieces = profile(figure, plane, &lead);
+        let reach = pieces.iter().map(|piece| piece.h1).max_by_key(|depth| depth.abs());
+        lead.depth_sign = if reach.is_some_and(|depth| depth < 0) { -1 } else { 1 };
+    }
+    Some(lead)
+}
+
+/// Makes pieces that turn back along v by no more than `tolerance` go straight on instead.
+pub(crate) fn straighten(
+    pieces: &mut [Piece],
+    forward: i64,
+    tolerance: Tolerance,
+    along: CutAlong,
+) -> Result<(), MonotonyFault> {
+    let axis = if along == CutAlong::Z { PlaneAxis::First } else { PlaneAxis::Second };
+    let mut furthest = i64::MIN;
+    for piece in pieces {
+        furthest = furthest.max(forward * piece.v0);
+        if furthest - forward * piece.v1 > tolerance.split(along).0 {
+            return Err(MonotonyFault { axis, element: piece.element });
+        }
+        piece.v0 = forward * furthest;
+        furthest = furthest.max(forward * piece.v1);
+        piece.v1 = forward * furthest;
+    }
+    Ok(())
+}
+
 /// The contour after the approach, as pieces, in order. Depth is measured from A along `lead.depth_sign`
 /// (along +u when the approach has no depth).
 pub(crate) fn profile(figure: &Figure, plane: &Plane, lead: &LeadIn) -> Vec<Piece> {
@@ -315,10 +384,10 @@ const fn quadrant((right, up): (i64, i64)) -> u32 {
     }
 }
 
-/// The first place where the contour turns back on an axis by more than `tolerance` (radius for X), walking from
+/// The first place where the contour turns back on an axis by more than `tolerance`, walking from
 /// the end of the approach: along the cut it must keep the direction from begin to end, along the depth axis it
 /// must only rise towards the start. `None` also for a figure without a contour.
-pub fn monotony_fault(figure: &Figure, along: CutAlong, tolerance: Length) -> Option<MonotonyFault> {
+pub fn monotony_fault(figure: &Figure, along: CutAlong, tolerance: Tolerance) -> Option<MonotonyFault> {
     let plane = Plane::new(along == CutAlong::Z, LeastIncrement::METRIC_C);
     within_range(figure)?;
     let lead = lead_in(figure, &plane)?;
@@ -329,7 +398,7 @@ pub fn monotony_fault(figure: &Figure, along: CutAlong, tolerance: Length) -> Op
 pub(crate) fn monotony_fault_of(
     pieces: &[Piece],
     along: CutAlong,
-    tolerance: Length,
+    tolerance: Tolerance,
     lead: &LeadIn,
 ) -> Option<MonotonyFault> {
     let (cut_axis, depth_axis) = match along {
@@ -337,6 +406,7 @@ pub(crate) fn monotony_fault_of(
         CutAlong::X => (PlaneAxis::Second, PlaneAxis::First),
     };
     let forward = cut_sign(pieces)?;
+    let (along_cut, along_depth) = tolerance.split(along);
     let rise = match lead.depth_sign {
         0 => pieces.last().map_or(0, |last| (last.h1 - pieces[0].h0).signum()),
         _ => -1,
@@ -345,15 +415,40 @@ pub(crate) fn monotony_fault_of(
     for piece in pieces {
         furthest_v = furthest_v.max(forward * piece.v0);
         furthest_h = furthest_h.max(rise * piece.h0);
-        if furthest_v - forward * piece.v1 > tolerance.nm() {
+        if furthest_v - forward * piece.v1 > along_cut {
             return Some(MonotonyFault { axis: cut_axis, element: piece.element });
         }
         let against = if rise == 0 { (piece.h1 - piece.h0).abs() } else { furthest_h - rise * piece.h1 };
-        if against > tolerance.nm() {
+        if against > along_depth {
             return Some(MonotonyFault { axis: depth_axis, element: piece.element });
         }
     }
     None
+}
+
+/// The first place where the contour of a figure with pockets turns back along the cut by more than `tolerance`: no
+/// pass could follow it.
+pub fn turn_back_fault(figure: &Figure, along: CutAlong, tolerance: Tolerance) -> Option<MonotonyFault> {
+    let plane = Plane::new(along == CutAlong::Z, LeastIncrement::METRIC_C);
+    within_range(figure)?;
+    let lead = pocket_lead_in(figure, &plane)?;
+    let mut pieces = profile(figure, &plane, &lead);
+    let forward = cut_sign(&pieces)?;
+    straighten(&mut pieces, forward, tolerance, along).err()
+}
+
+/// The element that rises highest above the end of the contour, if one does: the way back from the end to the start
+/// leads through it.
+pub fn hump_before_end(figure: &Figure, along: CutAlong, tolerance: Tolerance) -> Option<u32> {
+    let plane = Plane::new(along == CutAlong::Z, LeastIncrement::METRIC_C);
+    within_range(figure)?;
+    let lead = pocket_lead_in(figure, &plane)?;
+    let pieces = profile(figure, &plane, &lead);
+    let (begin, end) = (pieces.first()?, pieces.last()?.h1);
+    let begin = std::iter::once((begin.h0, begin.element));
+    let corners = begin.chain(pieces.iter().map(|piece| (piece.h1, piece.element)));
+    let (highest, element) = corners.min_by_key(|corner| corner.0)?;
+    (end - highest > tolerance.split(along).1).then_some(element)
 }
 
 /// Direction of the cut along v: from begin to end of the contour, or of its first stretch along v when both have
@@ -425,7 +520,7 @@ mod tests {
     fn a_ball_end_is_monotone_and_a_bulge_is_not() {
         // Half-ball of radius 10 on the axis, from the pole to the equator.
         let ball = figure(vec![line(0, 2), line(0, 0), arc(20, -10, Turn::CounterClockwise, (0, -10))]);
-        assert_eq!(monotony_fault(&ball, CutAlong::Z, Length::ZERO), None);
+        assert_eq!(monotony_fault(&ball, CutAlong::Z, Tolerance::EXACT), None);
         // The same circle 5 mm further round turns back on X.
         let centre = place(0, -10);
         let beyond = Element {
@@ -435,18 +530,18 @@ mod tests {
         };
         let bulge = figure(vec![line(0, 2), line(0, 0), beyond]);
         let fault = MonotonyFault { axis: PlaneAxis::Second, element: 2 };
-        assert_eq!(monotony_fault(&bulge, CutAlong::Z, Length::ZERO), Some(fault));
-        assert_eq!(monotony_fault(&bulge, CutAlong::Z, Length::from_mm(2)), None);
+        assert_eq!(monotony_fault(&bulge, CutAlong::Z, Tolerance::EXACT), Some(fault));
+        assert_eq!(monotony_fault(&bulge, CutAlong::Z, Tolerance::both(Length::from_mm(2))), None);
     }
 
     #[test]
     fn an_arc_between_monotone_ends_is_seen_to_swing_out() {
         // From X20 to X40 along Z, but the long way round.
         let swung = figure(vec![line(20, 2), line(20, -10), arc(40, -20, Turn::Clockwise, (40, -10))]);
-        assert_eq!(monotony_fault(&swung, CutAlong::Z, Length::ZERO), None);
+        assert_eq!(monotony_fault(&swung, CutAlong::Z, Tolerance::EXACT), None);
         let wrong = figure(vec![line(20, 2), line(20, -10), arc(40, -20, Turn::CounterClockwise, (40, -10))]);
         assert_eq!(
-            monotony_fault(&wrong, CutAlong::Z, Length::ZERO),
+            monotony_fault(&wrong, CutAlong::Z, Tolerance::EXACT),
             Some(MonotonyFault { axis: PlaneAxis::First, element: 2 })
         );
     }

@@ -13,7 +13,7 @@
 //!   for before the first move.
 //!
 //! Not here: words, modal state, numbers of codes or alarms, control names, feeds of figure blocks (the contour
-//! pass runs at the feed of the cycle), nose radius compensation, pockets (type II roughing).
+//! pass runs at the feed of the cycle), nose radius compensation.
 //!
 //! ```
 //! use turnwright_canon::{Phase, RapidPath};
@@ -36,23 +36,26 @@
 
 mod figure;
 mod groove;
+mod heights;
 mod misuse;
 mod pattern;
 mod plane;
+mod pockets;
 mod roughing;
 mod semi_finish;
 mod single;
 mod threading;
 
 pub use figure::{
-    CutAlong, Element, Figure, FigureMotion, MonotonyFault, PlaneAxis, StartFault, monotony_fault,
-    start_inside_fault,
+    CutAlong, Element, Figure, FigureMotion, MonotonyFault, PlaneAxis, StartFault, Tolerance,
+    hump_before_end, monotony_fault, start_inside_fault, turn_back_fault,
 };
 pub use groove::{Groove, GrooveRequest, PeckAxis, ReliefDirection, groove};
 pub use misuse::Misuse;
 pub use pattern::{Pattern, PatternRequest, SinglePass, pattern};
+pub use pockets::{BottomEscape, Hump, PocketRequest, PocketRoughing, rough_pockets};
 pub use roughing::{Coincident, EscapeSpeed, LevelOrigin, Monotony, RoughRequest, Roughing, rough};
-pub use semi_finish::{SemiFinished, rough_and_semi_finish};
+pub use semi_finish::{SemiFinished, rough_and_semi_finish, rough_pockets_and_semi_finish};
 pub use single::{
     BoxCycle, BoxRequest, FirstAxis, ThreadOnce, ThreadOnceRequest, angle_of_start, box_cycle,
     taper_crosses_start, thread_once,

@@ -17,7 +17,7 @@ use turnwright_units::{Displacement, Length, Position, Radius, WorkTip};
 
 use crate::figure::{LeadIn, Piece, cut_sign, lead_in, monotony_fault_of, profile, snap};
 use crate::plane::{Plane, in_range};
-use crate::{Context, CutAlong, CycleMove, Figure, Misuse, Tool, pass_number};
+use crate::{Context, CutAlong, CycleMove, Figure, Misuse, Tolerance, Tool, pass_number};
 
 /// A level that lies exactly on a stretch of the figure parallel to the cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,8 +53,8 @@ pub enum Monotony {
     Ignore,
     /// Refuse it as [`Misuse::NotMonotone`].
     Check {
-        /// Turning back by no more than this is forgiven (radius for X).
-        tolerance: Length,
+        /// Turning back by no more than this is forgiven.
+        tolerance: Tolerance,
     },
 }
 
@@ -140,16 +140,10 @@ pub fn rough(figure: Figure, request: RoughRequest) -> Result<Roughing, Misuse> 
     {
         return Err(Misuse::NotMonotone(fault));
     }
-    let none = Position::new(Radius::ZERO, Length::ZERO);
-    let allowances = Displacement::new(request.allowance_x, request.allowance_z);
-    let shift = snap(none + allowances, request.context.increment) - none;
-    let start = plane.split(figure.start);
+    let shift = allowance_shift(&request);
     let origin = plane.split(figure.start + shift);
-    let level_zero = match request.level_origin {
-        LevelOrigin::ShiftedStart => 0,
-        LevelOrigin::Start => lead.depth_sign * (start.0 - origin.0),
-    };
-    let height = lead.depth_sign * (lead.end.0 - start.0) - level_zero;
+    let level_zero = level_zero(&request, &plane, &lead, &figure, shift);
+    let height = lead.depth_sign * (lead.end.0 - plane.split(figure.start).0) - level_zero;
     // The number of n ≥ 1 with n·depth < height: the level that reaches the contour is the contour pass.
     let levels = if height > 0 { (height - 1) / request.depth.nm() } else { 0 };
     let profile = Profile::new(pieces, plane.grid_u() / 2);
@@ -172,7 +166,30 @@ pub fn rough(figure: Figure, request: RoughRequest) -> Result<Roughing, Misuse> 
     })
 }
 
-fn check_words(request: &RoughRequest, plane: &Plane) -> Result<(), Misuse> {
+/// The allowances on the least increment.
+pub(crate) fn allowance_shift(request: &RoughRequest) -> Displacement<WorkTip> {
+    let none = Position::new(Radius::ZERO, Length::ZERO);
+    let allowances = Displacement::new(request.allowance_x, request.allowance_z);
+    snap(none + allowances, request.context.increment) - none
+}
+
+/// Depth below A′ of the place that levels are counted from.
+pub(crate) fn level_zero(
+    request: &RoughRequest,
+    plane: &Plane,
+    lead: &LeadIn,
+    figure: &Figure,
+    shift: Displacement<WorkTip>,
+) -> i64 {
+    match request.level_origin {
+        LevelOrigin::ShiftedStart => 0,
+        LevelOrigin::Start => {
+            lead.depth_sign * (plane.split(figure.start).0 - plane.split(figure.start + shift).0)
+        }
+    }
+}
+
+pub(crate) fn check_words(request: &RoughRequest, plane: &Plane) -> Result<(), Misuse> {
     in_range(&[request.depth, request.escape, request.allowance_x.0, request.allowance_z])?;
     if request.depth.nm() <= 0 {
         return Err(Misuse::DepthNotPositive);
@@ -448,7 +465,7 @@ mod tests {
     fn a_pocket_is_refused_only_when_asked() {
         let pocket = figure(&[(10_000, 2_000), (10_000, -9_000), (9_000, -12_000), (25_000, -12_000)]);
         let fault = MonotonyFault { axis: PlaneAxis::Second, element: 2 };
-        let strict = RoughRequest { monotony: Monotony::Check { tolerance: Length::ZERO }, ..request() };
+        let strict = RoughRequest { monotony: Monotony::Check { tolerance: Tolerance::EXACT }, ..request() };
         assert_eq!(refused(pocket.clone(), strict), Misuse::NotMonotone(fault));
         assert!(rough(pocket, request()).is_ok());
     }

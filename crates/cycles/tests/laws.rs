@@ -5,11 +5,12 @@
 
 use turnwright_canon::{Action, Phase, RapidPath, Shape, Turn};
 use turnwright_cycles::{
-    BoxRequest, Clamp, Coincident, Context, CutAlong, CycleMove, DepthLaw, Element, EscapeSpeed, Figure,
-    FigureMotion, FirstAxis, FlankInfeed, GrooveRequest, LevelOrigin, Misuse, Monotony, MonotonyFault,
-    PatternRequest, PeckAxis, PlaneAxis, ReliefDirection, RoughRequest, SinglePass, ThreadOnceRequest,
-    ThreadRequest, box_cycle, depth_schedule, groove, monotony_fault, pattern, rough, start_inside_fault,
-    taper_crosses_start, thread, thread_once,
+    BottomEscape, BoxRequest, Clamp, Coincident, Context, CutAlong, CycleMove, DepthLaw, Element,
+    EscapeSpeed, Figure, FigureMotion, FirstAxis, FlankInfeed, GrooveRequest, Hump, LevelOrigin, Misuse,
+    Monotony, MonotonyFault, PatternRequest, PeckAxis, PlaneAxis, PocketRequest, ReliefDirection,
+    RoughRequest, SinglePass, ThreadOnceRequest, ThreadRequest, Tolerance, box_cycle, depth_schedule, groove,
+    hump_before_end, monotony_fault, pattern, rough, rough_pockets, start_inside_fault, taper_crosses_start,
+    thread, thread_once, turn_back_fault,
 };
 use turnwright_units::{
     Angle, Feed, FeedPerRevolution, Lead, LeastIncrement, Length, Position, Radius, WorkTip,
@@ -313,7 +314,7 @@ fn only_pockets_are_found_not_monotone() {
         let bottom = dice.between(500, 30_000);
         let mut strokes = strokes(&mut dice, bottom, false);
         let figure = setting.figure(bottom, FigureMotion::Rapid, &strokes);
-        assert_eq!(monotony_fault(&figure, setting.along, Length::ZERO), None, "{figure:?}");
+        assert_eq!(monotony_fault(&figure, setting.along, Tolerance::EXACT), None, "{figure:?}");
         let outward = -setting.su;
         let (x, z) = if setting.along == CutAlong::Z { (outward, 0) } else { (0, outward) };
         assert_eq!(start_inside_fault(&figure, setting.along, Radius(thousandths(x)), thousandths(z)), None);
@@ -323,10 +324,10 @@ fn only_pockets_are_found_not_monotone() {
         let pocket = setting.figure(bottom, FigureMotion::Rapid, &strokes);
         let axis = if setting.along == CutAlong::Z { PlaneAxis::Second } else { PlaneAxis::First };
         let fault = MonotonyFault { axis, element: strokes.len() as u32 };
-        assert_eq!(monotony_fault(&pocket, setting.along, Length::ZERO), Some(fault), "{pocket:?}");
-        assert_eq!(monotony_fault(&pocket, setting.along, thousandths(10)), None);
+        assert_eq!(monotony_fault(&pocket, setting.along, Tolerance::EXACT), Some(fault), "{pocket:?}");
+        assert_eq!(monotony_fault(&pocket, setting.along, Tolerance::both(thousandths(10))), None);
         let checked = RoughRequest {
-            monotony: Monotony::Check { tolerance: Length::ZERO },
+            monotony: Monotony::Check { tolerance: Tolerance::EXACT },
             ..rough_request(&mut dice, &setting)
         };
         assert_eq!(rough(pocket, checked).map(|_| ()), Err(Misuse::NotMonotone(fault)));
@@ -717,7 +718,7 @@ fn run(
 #[test]
 fn no_roughing_request_panics_or_runs_away() {
     let mut dice = Dice(0xDEAD_BEEF);
-    let mut accepted = 0;
+    let (mut accepted, mut with_pockets) = (0, 0);
     for _ in 0..60_000 {
         let context = wild_context(&mut dice);
         let figure = wild_figure(&mut dice, context.start);
@@ -734,18 +735,31 @@ fn no_roughing_request_panics_or_runs_away() {
             escape_speed: EscapeSpeed::Feed,
             semi_finish: dice.chance(50),
             monotony: if dice.chance(20) {
-                Monotony::Check { tolerance: word(&mut dice) }
+                Monotony::Check { tolerance: Tolerance::both(word(&mut dice)) }
             } else {
                 Monotony::Ignore
             },
         };
-        let _ = monotony_fault(&figure, along, word(&mut dice));
+        let _ = monotony_fault(&figure, along, Tolerance::both(word(&mut dice)));
         let _ = start_inside_fault(&figure, along, request.allowance_x, request.allowance_z);
-        let cycle = rough(figure, request);
+        let cycle = rough(figure.clone(), request);
         let estimate = cycle.as_ref().map_or(0, |cycle| cycle.move_estimate());
         accepted += i32::from(run(cycle, estimate, context.start));
+        let _ = turn_back_fault(&figure, along, Tolerance::both(word(&mut dice)));
+        let _ = hump_before_end(&figure, along, Tolerance::both(word(&mut dice)));
+        let request = PocketRequest {
+            rough: request,
+            tolerance: Tolerance::both(word(&mut dice)),
+            clearance: word(&mut dice),
+            hump: dice.pick(&[Hump::AlongContour, Hump::ExtraLevel]),
+            bottom_escape: dice.pick(&[BottomEscape::Follow, BottomEscape::Diagonal]),
+            lift_speed: EscapeSpeed::Rapid,
+        };
+        let cycle = rough_pockets(figure, request);
+        let estimate = cycle.as_ref().map_or(0, |cycle| cycle.move_estimate());
+        with_pockets += i32::from(run(cycle, estimate, context.start));
     }
-    assert!(accepted > 1_000, "{accepted} accepted");
+    assert!(accepted > 1_000 && with_pockets > 1_000, "{accepted} and {with_pockets} accepted");
 }
 
 #[test]

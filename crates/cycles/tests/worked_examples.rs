@@ -6,10 +6,10 @@
 
 use turnwright_canon::{Action, Phase, RapidPath, Shape, Turn};
 use turnwright_cycles::{
-    Clamp, Coincident, Context, CutAlong, CycleMove, DepthLaw, Element, EscapeSpeed, Figure, FigureMotion,
-    FlankInfeed, GrooveRequest, LevelOrigin, Monotony, PatternRequest, PeckAxis, ReliefDirection,
-    RoughRequest, SinglePass, ThreadRequest, groove, monotony_fault, pattern, rough, start_inside_fault,
-    thread,
+    BottomEscape, Clamp, Coincident, Context, CutAlong, CycleMove, DepthLaw, Element, EscapeSpeed, Figure,
+    FigureMotion, FlankInfeed, GrooveRequest, Hump, LevelOrigin, Monotony, PatternRequest, PeckAxis,
+    PocketRequest, ReliefDirection, RoughRequest, SinglePass, ThreadRequest, Tolerance, groove,
+    monotony_fault, pattern, rough, rough_pockets, start_inside_fault, thread,
 };
 use turnwright_geometry::{Point, centre_from_radius};
 use turnwright_units::{
@@ -74,7 +74,7 @@ fn rough_request(along: CutAlong, start: (f64, f64), depth: f64, allowance: (f64
         level_origin: LevelOrigin::ShiftedStart,
         escape_speed: EscapeSpeed::Feed,
         semi_finish: true,
-        monotony: Monotony::Check { tolerance: Length::ZERO },
+        monotony: Monotony::Check { tolerance: Tolerance::EXACT },
     }
 }
 
@@ -162,7 +162,7 @@ fn rough_turning_of_the_shaft() {
     assert_eq!(moves[10].element, Some(5), "the third cut ends on the fillet");
     assert_eq!(moves[34].element, Some(5), "the fillet of the contour pass");
     assert_moves(cycle, SHAFT);
-    assert_eq!(monotony_fault(&shaft(), CutAlong::Z, Length::ZERO), None);
+    assert_eq!(monotony_fault(&shaft(), CutAlong::Z, Tolerance::EXACT), None);
     let request = shaft_request();
     assert_eq!(start_inside_fault(&shaft(), CutAlong::Z, request.allowance_x, request.allowance_z), None);
 }
@@ -190,6 +190,41 @@ fn escape_at_rapid_and_no_contour_pass() {
     let moves: Vec<_> = rough(shaft(), request).expect("a cycle").map(|step| told(&step).1).collect();
     assert_eq!(moves[3], "Re43.3,-44.4");
     assert_eq!(moves[28..], ["Rr19.3,0.6", "Rh46,0.5"]);
+}
+
+fn pocket_request(rough: RoughRequest) -> PocketRequest {
+    PocketRequest {
+        rough,
+        tolerance: Tolerance::EXACT,
+        clearance: Length::ZERO,
+        hump: Hump::AlongContour,
+        bottom_escape: BottomEscape::Follow,
+        lift_speed: EscapeSpeed::Rapid,
+    }
+}
+
+fn two_pockets() -> Figure {
+    let elements = [
+        ('R', 30.0, 2.0, 0.0),
+        ('F', 30.0, -10.0, 0.0),
+        ('F', 50.0, -20.0, 0.0),
+        ('F', 34.0, -28.0, 0.0),
+        ('F', 34.0, -36.0, 0.0),
+        ('F', 52.0, -42.0, 0.0),
+        ('F', 40.0, -48.0, 0.0),
+        ('F', 40.0, -54.0, 0.0),
+        ('F', 56.0, -60.0, 0.0),
+        ('F', 60.0, -60.0, 0.0),
+    ];
+    figure((60.0, 2.0), &elements)
+}
+
+#[test]
+fn rough_turning_of_two_pockets() {
+    let request = pocket_request(rough_request(CutAlong::Z, (60.0, 2.0), 3.0, (0.4, 0.0)));
+    let cycle = rough_pockets(two_pockets(), request).expect("a cycle");
+    assert!(cycle.move_estimate() >= 66);
+    assert_moves(cycle, TWO_POCKETS);
 }
 
 #[test]
@@ -435,6 +470,21 @@ fn directions_come_from_the_figure() {
 }
 
 /// Rough turning of the shaft O4008: levels at 2 mm, the fourth exactly on a cylinder.
+const TWO_POCKETS: &[(u32, &str)] = &[
+    (0, "Ra60.4,2"),
+    (1, "Ri54.4,2 Fc54.4,-59.25 Fe56.4,-60 Fe60.4,-60 Re61.4,-60"),
+    (2, "Rr61.4,2 Ri48.4,2 Fc48.4,-19 Fe50.4,-20 Re55.4,-20"),
+    (3, "Rr55.4,2 Ri42.4,2 Fc42.4,-16 Fe48.4,-19 Re49.4,-19"),
+    (4, "Rr49.4,2 Ri36.4,2 Fc36.4,-13 Fe42.4,-16 Re43.4,-16"),
+    (5, "Rr55.4,-16 Rr55.4,-20 Fi50.4,-20 Fi48.4,-21 Fc48.4,-40.6667 Fe52.4,-42 Re55.4,-42"),
+    (6, "Rr55.4,-21 Fi48.4,-21 Fi42.4,-24 Fc42.4,-38.6667 Fe48.4,-40.6667 Re49.4,-40.6667"),
+    (7, "Rr49.4,-24 Fi42.4,-24 Fi36.4,-27 Fc36.4,-36.6667 Fe42.4,-38.6667 Re43.4,-38.6667"),
+    (8, "Rr55.4,-38.6667 Rr55.4,-42 Fi52.4,-42 Fi48.4,-44 Fc48.4,-57 Fe54.4,-59.25 Re55.4,-59.25"),
+    (9, "Rr55.4,-44 Fi48.4,-44 Fi42.4,-47 Fc42.4,-54.75 Fe48.4,-57 Re49.4,-57"),
+    (10, "Rr60.4,-57 Rr60.4,2 Ri30.4,2 Fk30.4,-10 Fk50.4,-20 Fk34.4,-28 Fk34.4,-36 Fk52.4,-42"),
+    (10, "Fk40.4,-48 Fk40.4,-54 Fk56.4,-60 Fk60.4,-60 Rh60,2"),
+];
+
 const SHAFT: &[(u32, &str)] = &[
     (0, "Ra46.3,0.6"),
     (1, "Fi42.3,0.6 Fc42.3,-44.9 Fe43.3,-44.4 Rr43.3,0.6"),

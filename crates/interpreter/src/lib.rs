@@ -23,6 +23,7 @@ mod corner;
 mod data_list;
 mod faults;
 mod figure;
+mod figure_checks;
 mod flow;
 mod functions;
 mod in_force;

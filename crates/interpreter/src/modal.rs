@@ -183,6 +183,11 @@ pub(crate) struct Settings {
     pub(crate) monotony_check: bool,
     pub(crate) type_by_first_block: bool,
     pub(crate) no_semi_finish: bool,
+    pub(crate) no_pocket_semi_finish: bool,
+    /// How far a figure may turn back along the first and the second axis; the second as a radius.
+    pub(crate) monotony_tolerances: [Length; 2],
+    pub(crate) pocket_clearance: Length,
+    pub(crate) follows_pocket_bottom: bool,
     pub(crate) rapid_escape: bool,
     pub(crate) offsets: OffsetSettings,
 }
@@ -327,6 +332,10 @@ impl Settings {
             monotony_check: bit("monotony-check"),
             type_by_first_block: bit("type-by-first-block"),
             no_semi_finish: bit("no-semi-finish-type-one"),
+            no_pocket_semi_finish: bit("no-semi-finish-type-two"),
+            monotony_tolerances: [mm("monotony-tolerance-1"), mm("monotony-tolerance-2")],
+            pocket_clearance: mm("cycle-clearance"),
+            follows_pocket_bottom: bit("pocket-bottom-follow"),
             rapid_escape: bit("rapid-escape"),
             offsets: OffsetSettings::new(parameters),
         }

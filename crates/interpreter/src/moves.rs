@@ -2,8 +2,8 @@
 
 use turnwright_canon::{Action, Command, Curve, CycleLabel, CycleOrigin, Origin, RapidPath, Shape, Turn};
 use turnwright_cycles::{
-    BoxCycle, CycleMove, Element, FigureMotion, Groove, Pattern, Roughing, SemiFinished, ThreadOnce,
-    Threading,
+    BoxCycle, CycleMove, Element, FigureMotion, Groove, Pattern, PocketRoughing, Roughing, SemiFinished,
+    ThreadOnce, Threading,
 };
 use turnwright_diagnostics::Diagnostic;
 use turnwright_units::{Feed, FeedPerMinute, FeedPerRevolution, Position, WorkTip};
@@ -33,7 +33,9 @@ pub(crate) struct ActiveCycle {
 #[derive(Debug)]
 pub(crate) enum CycleMoves {
     Roughing(Box<Roughing>),
-    SemiFinished(Box<SemiFinished>),
+    Pockets(Box<PocketRoughing>),
+    SemiFinished(Box<SemiFinished<Roughing>>),
+    SemiFinishedPockets(Box<SemiFinished<PocketRoughing>>),
     Pattern(Box<Pattern>),
     Groove(Box<Groove>),
     Threading(Box<Threading>),
@@ -45,7 +47,9 @@ impl CycleMoves {
     fn next(&mut self) -> Option<CycleMove> {
         match self {
             Self::Roughing(cycle) => cycle.next(),
+            Self::Pockets(cycle) => cycle.next(),
             Self::SemiFinished(cycle) => cycle.next(),
+            Self::SemiFinishedPockets(cycle) => cycle.next(),
             Self::Pattern(cycle) => cycle.next(),
             Self::Groove(cycle) => cycle.next(),
             Self::Threading(cycle) => cycle.next(),
@@ -57,7 +61,9 @@ impl CycleMoves {
     fn estimate(&self) -> u64 {
         match self {
             Self::Roughing(cycle) => cycle.move_estimate(),
+            Self::Pockets(cycle) => cycle.move_estimate(),
             Self::SemiFinished(cycle) => cycle.move_estimate(),
+            Self::SemiFinishedPockets(cycle) => cycle.move_estimate(),
             Self::Pattern(cycle) => cycle.move_estimate(),
             Self::Groove(cycle) => cycle.move_estimate(),
             Self::Threading(cycle) => cycle.move_estimate(),

@@ -5,22 +5,26 @@
 //! Δu is a diameter with sign, Δw a length with sign. G72 has the depth in W and cuts along X. The form with
 //! everything in one block is that of `one_block.rs`.
 //!
-//! Type I here: the figure has no pockets and its first block names one axis (X for G71, Z for G72).
+//! Type I: the figure has no pockets and its first block names one axis (X for G71, Z for G72). Type II: the figure
+//! may have pockets and its first block names both axes, if need be with W0 or U0; a 988 series control sees by the
+//! figure itself, unless 5102#2 is set. On the 980 series `K1` asks for the check of monotony and `J1`, in type II,
+//! for the last pass along the figure.
 //!
 //! Source: stock removal cycles of both families; policies of the control where they differ.
 
 use turnwright_control::policy::{
-    CoincidentLevel, CycleType, EscapeSpeed, LevelOrigin, MonotonyCheck, TypeTwo,
+    BottomEscape, CoincidentLevel, EscapeSpeed, FlatHump, LevelOrigin, MonotonyCheck, PocketLiftSpeed,
+    PocketSemiFinish,
 };
 use turnwright_cycles as cycles;
-use turnwright_diagnostics::{Diagnostic, Place};
 use turnwright_syntax::Block;
-use turnwright_units::{Length, Position, Radius, WorkTip};
+use turnwright_units::{Length, Radius};
 
 use super::Function;
 use super::one_block::Form;
 use crate::block::Call;
 use crate::figure::Captured;
+use crate::figure_checks::{RoughType, switches_on};
 use crate::machine::Core;
 use crate::moves::CycleMoves;
 use crate::report::Alarm;
@@ -104,13 +108,12 @@ impl Core {
             return Err(self.alarm_at("feed-missing", call.word));
         };
         self.check_spindle();
-        let checks = self.checks_monotony(call.block);
         let captured = self.capture_figure(call)?;
         self.remember_range(&captured);
-        self.check_first_block(&captured, along, call)?;
-        self.check_figure(&captured, along, (allowance_x, allowance_z), checks, call)?;
+        let kind = self.rough_type(&captured, along)?;
+        self.check_figure(&captured, kind, along, (allowance_x, allowance_z), call)?;
         let policies = &self.control.policies;
-        let request = cycles::RoughRequest {
+        let rough = cycles::RoughRequest {
             context: self.cycle_context(feed),
             along,
             depth: words.depth,
@@ -130,19 +133,61 @@ impl Core {
                 EscapeSpeed::Feed => cycles::EscapeSpeed::Feed,
                 EscapeSpeed::Rapid => cycles::EscapeSpeed::Rapid,
             },
-            semi_finish: !self.settings.no_semi_finish,
+            semi_finish: match kind {
+                RoughType::One => !self.settings.no_semi_finish,
+                RoughType::Two => self.semi_finishes_pockets(call.block),
+            },
             monotony: cycles::Monotony::Ignore,
         };
         let (lines, behind) = (captured.lines(), captured.behind);
         let figure = captured.figure;
-        let moves = match words.semi_finish {
-            None => cycles::rough(figure, request).map(|cycle| CycleMoves::Roughing(Box::new(cycle))),
-            Some((x, z)) => cycles::rough_and_semi_finish(figure, request, x, z)
+        let moves = match (kind, words.semi_finish) {
+            (RoughType::One, None) => {
+                cycles::rough(figure, rough).map(|cycle| CycleMoves::Roughing(Box::new(cycle)))
+            }
+            (RoughType::One, Some((x, z))) => cycles::rough_and_semi_finish(figure, rough, x, z)
                 .map(|cycle| CycleMoves::SemiFinished(Box::new(cycle))),
+            (RoughType::Two, None) => cycles::rough_pockets(figure, self.pocket_request(rough))
+                .map(|cycle| CycleMoves::Pockets(Box::new(cycle))),
+            (RoughType::Two, Some((x, z))) => {
+                cycles::rough_pockets_and_semi_finish(figure, self.pocket_request(rough), x, z)
+                    .map(|cycle| CycleMoves::SemiFinishedPockets(Box::new(cycle)))
+            }
         };
         let moves = moves.map_err(|fault| self.misuse(fault, call))?;
         self.start_cycle(moves, call.code, lines, 0)?;
         self.go(behind, call.environment)
+    }
+
+    fn pocket_request(&self, rough: cycles::RoughRequest) -> cycles::PocketRequest {
+        let policies = &self.control.policies;
+        cycles::PocketRequest {
+            rough,
+            tolerance: self.monotony_tolerance(),
+            clearance: self.settings.pocket_clearance,
+            hump: match policies.flat_hump {
+                FlatHump::AlongContour => cycles::Hump::AlongContour,
+                FlatHump::ExtraLevel => cycles::Hump::ExtraLevel,
+            },
+            bottom_escape: match policies.bottom_escape {
+                BottomEscape::ByParameter if !self.settings.follows_pocket_bottom => {
+                    cycles::BottomEscape::Diagonal
+                }
+                BottomEscape::Follow | BottomEscape::ByParameter => cycles::BottomEscape::Follow,
+            },
+            lift_speed: match policies.pocket_lift_speed {
+                PocketLiftSpeed::Feed => cycles::EscapeSpeed::Feed,
+                PocketLiftSpeed::Rapid => cycles::EscapeSpeed::Rapid,
+            },
+        }
+    }
+
+    /// Whether roughing with pockets ends with the pass along the figure.
+    fn semi_finishes_pockets(&self, block: &Block) -> bool {
+        match self.control.policies.pocket_semi_finish {
+            PocketSemiFinish::ByParameter => !self.settings.no_pocket_semi_finish,
+            PocketSemiFinish::ByWord => switches_on(block, b'J'),
+        }
     }
 
     /// What cycles take from the state of the program.
@@ -165,137 +210,6 @@ impl Core {
             self.roughed.remove(0);
         }
         self.roughed.push((captured.range.first, captured.range.last));
-    }
-
-    /// The axes in the figure's first block choose the type.
-    fn check_first_block(
-        &self,
-        captured: &Captured,
-        along: cycles::CutAlong,
-        call: &Call<'_>,
-    ) -> Result<(), Alarm> {
-        let (depth, other) = match along {
-            cycles::CutAlong::Z => (captured.first_has_x, captured.first_has_z),
-            cycles::CutAlong::X => (captured.first_has_z, captured.first_has_x),
-        };
-        let automatic = self.control.policies.cycle_type == CycleType::ByTypeParameter
-            && !self.settings.type_by_first_block;
-        let has_pockets = || cycles::monotony_fault(&captured.figure, along, self.half_increment()).is_some();
-        let start_axis = || {
-            let expected = if along == cycles::CutAlong::Z { "X" } else { "Z" };
-            let diagnostic = Diagnostic::alarm("figure-start-axis").at(captured.first_place);
-            let word = format!("N{}", captured.range.first);
-            self.finish(
-                diagnostic
-                    .with("word", word)
-                    .with("expected", expected)
-                    .near(captured.range.first_place, "figure-range-here"),
-            )
-        };
-        let type_two = || {
-            let diagnostic = Diagnostic::error("type-two-not-supported-yet").at(captured.first_place);
-            let code = call.word.map_or(String::new(), |word| self.quote(word.start, word.end));
-            Err(self.finish(diagnostic.with("code", code).with("word", format!("N{}", captured.range.first))))
-        };
-        match (depth, other) {
-            (true, false) if automatic && has_pockets() => type_two(),
-            (true, false) => Ok(()),
-            (false, _) => Err(start_axis()),
-            (true, true) if automatic && !has_pockets() => Ok(()),
-            (true, true) if self.control.policies.type_two == TypeTwo::Alarm => Err(start_axis()),
-            (true, true) => type_two(),
-        }
-    }
-
-    fn half_increment(&self) -> Length {
-        Length::from_nm(self.modal.increment(&self.settings).nm() / 2)
-    }
-
-    /// Whether this control refuses a figure that turns back.
-    fn checks_monotony(&self, block: &Block) -> bool {
-        match self.control.policies.monotony_check {
-            MonotonyCheck::ByFigureCheck => self.settings.figure_check,
-            MonotonyCheck::ByMonotonyBit => self.settings.monotony_check,
-            MonotonyCheck::ByMonotonyBits => {
-                self.settings.monotony_check && self.settings.type_by_first_block
-            }
-            MonotonyCheck::ByWord => block.word(b'K').is_some_and(
-                |word| matches!(word.value, turnwright_syntax::Value::Number(number) if number.digits != 0),
-            ),
-        }
-    }
-
-    /// Figures that turn back, or reach beyond the start point.
-    fn check_figure(
-        &mut self,
-        captured: &Captured,
-        along: cycles::CutAlong,
-        (allowance_x, allowance_z): (Radius, Length),
-        checks: bool,
-        call: &Call<'_>,
-    ) -> Result<(), Alarm> {
-        if let Some(fault) = cycles::monotony_fault(&captured.figure, along, self.half_increment()) {
-            let place = self.element_place(captured, fault.element);
-            let key = match fault.axis {
-                cycles::PlaneAxis::First => "figure-not-monotone-z",
-                cycles::PlaneAxis::Second => "figure-not-monotone-x",
-            };
-            if checks {
-                return Err(self.finish(Diagnostic::alarm(key).at(place)));
-            }
-            let axis = if fault.axis == cycles::PlaneAxis::First { "Z" } else { "X" };
-            if !self.already_said("figure-not-monotone-warning", place.line) {
-                self.say(Diagnostic::warning("figure-not-monotone-warning").at(place).with("name", axis));
-            }
-        }
-        let warned =
-            self.warn_allowance_signs(call, &captured.figure, Some(along), (allowance_x, allowance_z));
-        if let Some(fault) = cycles::start_inside_fault(&captured.figure, along, allowance_x, allowance_z) {
-            let place = self.element_place(captured, fault.element);
-            if self.settings.figure_check {
-                return Err(self.finish(Diagnostic::alarm("figure-beyond-start").at(place)));
-            }
-            if !warned && !self.already_said("figure-beyond-start-warning", place.line) {
-                self.say(Diagnostic::warning("figure-beyond-start-warning").at(place));
-            }
-        }
-        Ok(())
-    }
-
-    /// Warns about allowances that lead into the part; true when it did. The part lies where the infeed goes, or
-    /// on an axis without infeed towards the furthest point of the figure; an allowance must point back.
-    pub(super) fn warn_allowance_signs(
-        &mut self,
-        call: &Call<'_>,
-        figure: &cycles::Figure,
-        along: Option<cycles::CutAlong>,
-        (allowance_x, allowance_z): (Radius, Length),
-    ) -> bool {
-        let start = figure.start;
-        let way = |is_infeed: bool, way: fn(&cycles::Element, Position<WorkTip>) -> Length| {
-            let reach = if is_infeed { 1 } else { figure.elements.len() };
-            let ways = figure.elements.iter().take(reach).map(|element| way(element, start));
-            ways.max_by_key(|way| way.abs()).unwrap_or_default()
-        };
-        let x = way(along == Some(cycles::CutAlong::Z), |element, start| (element.to.x - start.x).0);
-        let z = way(along == Some(cycles::CutAlong::X), |element, start| element.to.z - start.z);
-        let mut warned = false;
-        for (allowance, way, letter) in [(allowance_x.0, x, b'U'), (allowance_z, z, b'W')] {
-            if allowance.signum() * way.signum() > 0
-                && let Some(word) = call.block.word(letter)
-            {
-                self.warn("allowance-sign", word);
-                warned = true;
-            }
-        }
-        warned
-    }
-
-    /// The line of a figure's element; its bytes are not at hand any more, so the whole line is meant.
-    fn element_place(&self, captured: &Captured, element: u32) -> Place {
-        let line =
-            captured.figure.elements.get(element as usize).map_or(self.at.line, |element| element.line);
-        Place { source: self.at.source, line, line_offset: u64::MAX, column: 1, end_column: 1 }
     }
 
     /// The alarm of the control for what a cycle refused.

@@ -1,0 +1,196 @@
+//! What controls ask of a figure before they rough it: the type of roughing that its first block calls for, whether
+//! it turns back, whether it reaches beyond the start point, where its allowances point.
+//!
+//! In: a [`Captured`] figure and the words of the cycle block. Out: alarms where the control refuses, warnings where
+//! it goes on although a machinist would not mean it. Source: rules of the figure, chapters 1.5, 1.6, 3, 4 and 11 of
+//! the cycles.
+
+use turnwright_control::policy::{CycleType, MonotonyCheck, TypeTwo};
+use turnwright_cycles::{self as cycles, CutAlong};
+use turnwright_diagnostics::{Diagnostic, Place};
+use turnwright_syntax::{Block, Value};
+use turnwright_units::{Length, Position, Radius, WorkTip};
+
+use crate::block::Call;
+use crate::figure::Captured;
+use crate::machine::Core;
+use crate::report::Alarm;
+
+/// How a figure is roughed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RoughType {
+    /// Without pockets.
+    One,
+    /// With pockets.
+    Two,
+}
+
+/// Whether a word that switches something on is there and not zero.
+pub(crate) fn switches_on(block: &Block, letter: u8) -> bool {
+    block.word(letter).is_some_and(|word| matches!(word.value, Value::Number(number) if number.digits != 0))
+}
+
+impl Core {
+    /// The axes in the figure's first block choose the type, or the figure itself does.
+    pub(crate) fn rough_type(&self, captured: &Captured, along: CutAlong) -> Result<RoughType, Alarm> {
+        let (depth, other, expected) = match along {
+            CutAlong::Z => (captured.first_has_x, captured.first_has_z, "X"),
+            CutAlong::X => (captured.first_has_z, captured.first_has_x, "Z"),
+        };
+        let policies = &self.control.policies;
+        let has_pockets = || {
+            cycles::monotony_fault(&captured.figure, along, self.monotony_tolerance())
+                .is_some_and(|fault| (fault.axis == cycles::PlaneAxis::Second) == (along == CutAlong::Z))
+        };
+        let is_two = match policies.cycle_type {
+            CycleType::ByTypeParameter if !self.settings.type_by_first_block => has_pockets(),
+            _ => other,
+        };
+        let has_type_two = match policies.type_two {
+            TypeTwo::Available => true,
+            TypeTwo::TurningOnly => along == CutAlong::Z,
+            TypeTwo::Alarm => false,
+        };
+        match (depth, is_two) {
+            (true, false) => Ok(RoughType::One),
+            (true, true) if has_type_two => Ok(RoughType::Two),
+            _ => {
+                let diagnostic = Diagnostic::alarm("figure-start-axis").at(captured.first_place);
+                Err(self.finish(
+                    diagnostic
+                        .with("word", format!("N{}", captured.range.first))
+                        .with("expected", expected)
+                        .near(captured.range.first_place, "figure-range-here"),
+                ))
+            }
+        }
+    }
+
+    /// How far an axis may turn back: what the parameters forgive, and half an increment in any case.
+    pub(crate) fn monotony_tolerance(&self) -> cycles::Tolerance {
+        let half = Length::from_nm(self.modal.increment(&self.settings).nm() / 2);
+        let [first, second] = self.settings.monotony_tolerances;
+        cycles::Tolerance { x: Radius(second.max(half)), z: first.max(half) }
+    }
+
+    /// Whether this control refuses a figure that turns back.
+    fn checks_monotony(&self, block: &Block) -> bool {
+        match self.control.policies.monotony_check {
+            MonotonyCheck::ByFigureCheck => self.settings.figure_check,
+            MonotonyCheck::ByMonotonyBit => self.settings.monotony_check,
+            MonotonyCheck::ByMonotonyBits => {
+                self.settings.monotony_check && self.settings.type_by_first_block
+            }
+            MonotonyCheck::ByWord => switches_on(block, b'K'),
+        }
+    }
+
+    /// Figures that turn back or reach beyond the start point, and allowances that cut into them.
+    pub(crate) fn check_figure(
+        &mut self,
+        captured: &Captured,
+        kind: RoughType,
+        along: CutAlong,
+        allowances: (Radius, Length),
+        call: &Call<'_>,
+    ) -> Result<(), Alarm> {
+        self.check_monotony(captured, kind, along, call.block)?;
+        let warned = self.warn_allowance_signs(call, &captured.figure, Some(along), allowances);
+        if let Some(fault) = cycles::start_inside_fault(&captured.figure, along, allowances.0, allowances.1) {
+            let place = self.element_place(captured, fault.element);
+            if self.settings.figure_check {
+                return Err(self.finish(Diagnostic::alarm("figure-beyond-start").at(place)));
+            }
+            if !warned {
+                self.warn_element("figure-beyond-start-warning", place, None);
+            }
+        }
+        if let Some(element) = cycles::hump_before_end(&captured.figure, along, self.monotony_tolerance()) {
+            let place = self.element_place(captured, captured.figure.elements.len() as u32 - 1);
+            self.warn_element("return-through-figure", place, Some(self.element_place(captured, element)));
+        }
+        let sideways = match along {
+            CutAlong::Z => call.block.word(b'W').filter(|_| !allowances.1.is_zero()),
+            CutAlong::X => call.block.word(b'U').filter(|_| !allowances.0.0.is_zero()),
+        };
+        if let (RoughType::Two, Some(word)) = (kind, sideways) {
+            self.warn("allowance-into-pocket-wall", word);
+        }
+        Ok(())
+    }
+
+    /// An axis that turns back. Along the cut no pocket can be roughed; along the depth axis controls look at it only
+    /// without pockets, and most only when a parameter or word says so.
+    fn check_monotony(
+        &mut self,
+        captured: &Captured,
+        kind: RoughType,
+        along: CutAlong,
+        block: &Block,
+    ) -> Result<(), Alarm> {
+        let tolerance = self.monotony_tolerance();
+        let fault = match kind {
+            RoughType::One => cycles::monotony_fault(&captured.figure, along, tolerance),
+            RoughType::Two => cycles::turn_back_fault(&captured.figure, along, tolerance),
+        };
+        let Some(fault) = fault else { return Ok(()) };
+        let place = self.element_place(captured, fault.element);
+        let (key, axis) = match fault.axis {
+            cycles::PlaneAxis::First => ("figure-not-monotone-z", "Z"),
+            cycles::PlaneAxis::Second => ("figure-not-monotone-x", "X"),
+        };
+        if kind == RoughType::Two || self.checks_monotony(block) {
+            return Err(self.finish(Diagnostic::alarm(key).at(place)));
+        }
+        if !self.already_said("figure-not-monotone-warning", place.line) {
+            self.say(Diagnostic::warning("figure-not-monotone-warning").at(place).with("name", axis));
+        }
+        Ok(())
+    }
+
+    fn warn_element(&mut self, key: &'static str, place: Place, near: Option<Place>) {
+        if !self.already_said(key, place.line) {
+            let diagnostic = Diagnostic::warning(key).at(place);
+            self.say(match near {
+                Some(near) => diagnostic.near(near, key),
+                None => diagnostic,
+            });
+        }
+    }
+
+    /// Warns about allowances that lead into the part; true when it did. The part lies where the infeed goes, or
+    /// on an axis without infeed towards the furthest point of the figure; an allowance must point back.
+    pub(crate) fn warn_allowance_signs(
+        &mut self,
+        call: &Call<'_>,
+        figure: &cycles::Figure,
+        along: Option<CutAlong>,
+        (allowance_x, allowance_z): (Radius, Length),
+    ) -> bool {
+        let start = figure.start;
+        let way = |is_infeed: bool, way: fn(&cycles::Element, Position<WorkTip>) -> Length| {
+            let reach = if is_infeed { 1 } else { figure.elements.len() };
+            let ways = figure.elements.iter().take(reach).map(|element| way(element, start));
+            ways.max_by_key(|way| way.abs()).unwrap_or_default()
+        };
+        let x = way(along == Some(CutAlong::Z), |element, start| (element.to.x - start.x).0);
+        let z = way(along == Some(CutAlong::X), |element, start| element.to.z - start.z);
+        let mut warned = false;
+        for (allowance, way, letter) in [(allowance_x.0, x, b'U'), (allowance_z, z, b'W')] {
+            if allowance.signum() * way.signum() > 0
+                && let Some(word) = call.block.word(letter)
+            {
+                self.warn("allowance-sign", word);
+                warned = true;
+            }
+        }
+        warned
+    }
+
+    /// The line of a figure's element; its bytes are not at hand any more, so the whole line is meant.
+    fn element_place(&self, captured: &Captured, element: u32) -> Place {
+        let line =
+            captured.figure.elements.get(element as usize).map_or(self.at.line, |element| element.line);
+        Place { source: self.at.source, line, line_offset: u64::MAX, column: 1, end_column: 1 }
+    }
+}
