@@ -130,18 +130,13 @@ impl Core {
             self.count_block()?;
             self.count_idle(1)?;
             let (kept, skip) = self.cache.kept(id);
-            let mut is_quiet = true;
             if skip != 0 && skips(skip, environment) {
                 return Ok(self.go_on(environment)?);
             }
             match *kept {
-                Kept::Statement(statement) => {
-                    is_quiet = !statement.may_speak();
-                    self.run_statement(&statement, environment)?;
-                }
+                Kept::Statement(statement) => self.run_statement(&statement, environment)?,
                 Kept::Blank => self.go_on(environment)?,
                 Kept::Words { first, count, computes } => {
-                    is_quiet = false;
                     self.cache.refill(block, first, count);
                     self.count_idle(limits::IDLE_WORD_BLOCKS)?;
                     if computes {
@@ -161,10 +156,21 @@ impl Core {
                 self.after_block(environment)?;
             }
             match self.cache.current {
-                Some(next) if is_quiet && self.macros.interrupt.is_none() => id = next,
+                Some(next) if !self.has_something_to_say() => id = next,
                 _ => return Ok(()),
             }
         }
+    }
+
+    /// Whether the caller has to be asked or told something before the next block.
+    #[inline]
+    fn has_something_to_say(&self) -> bool {
+        !self.out.is_empty()
+            || self.sync.is_some()
+            || self.is_over
+            || self.active.is_some()
+            || self.waiting.is_some()
+            || self.macros.interrupt.is_some()
     }
 
     #[inline]

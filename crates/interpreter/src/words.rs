@@ -4,7 +4,7 @@
 
 use turnwright_control::policy::{CycleIntegerWords, FineDigits, IntegerWords, MissingPoint, NegativeFeed};
 use turnwright_syntax::{Decimal, Value, Word};
-use turnwright_units::{Diameter, Length, Radius};
+use turnwright_units::{Diameter, LeastIncrement, Length, Radius};
 
 use crate::functions::Function;
 use crate::machine::Core;
@@ -44,6 +44,9 @@ const POWER: [i64; 10] =
 /// Numbers with fewer digits than this are short enough and small enough for every control.
 const FINE_DIGITS_MAX: u64 = 100_000_000;
 
+/// The increment of nearly every control, nanometres: a division by a known number costs little.
+const USUAL: i64 = LeastIncrement::METRIC_B.nm();
+
 /// How often `step` goes into a number, to the nearest; halves away from zero.
 #[inline]
 const fn nearest(digits: i64, step: i64) -> i64 {
@@ -68,43 +71,44 @@ impl Core {
     pub(crate) fn length(&self, word: &Word) -> Result<Length, Alarm> {
         let number = self.number(word)?;
         let counts = !(number.has_point || self.settings.is_calculator);
-        // Nearly every word: metric, and no finer than the increment.
-        if !counts && !self.modal.is_inch && number.scale <= self.settings.metric_decimals {
-            let nm = number.digits.saturating_mul(POWER[usize::from(6 - number.scale)]);
-            if nm.abs() < self.settings.length_limit_nm {
-                return Ok(Length::from_nm(nm));
-            }
-        }
-        // Programs of CAM systems: a digit or two more.
-        if !counts
-            && !self.modal.is_inch
-            && number.scale <= 6
-            && number.digits.unsigned_abs() < FINE_DIGITS_MAX
+        if !(counts || self.modal.is_inch)
+            && let Some(nm) = self.millimetres(number)
+            && nm.abs() < self.settings.length_limit_nm
         {
+            return Ok(Length::from_nm(nm));
+        }
+        self.length_of(word, number, counts)
+    }
+
+    /// Millimetres in nanometres where little can go wrong; [`Core::length_of`] does the rest.
+    #[inline]
+    fn millimetres(&self, number: Decimal) -> Option<i64> {
+        let increment = self.settings.metric_increment.nm();
+        if number.scale <= self.settings.metric_decimals {
+            // Nearly every word: no finer than the increment.
+            return Some(number.digits.saturating_mul(POWER[usize::from(6 - number.scale)]));
+        }
+        if number.is_computed() && number.scale == 9 {
+            // Nanometres in an increment, and the thousandths of them that computed values are held to.
+            return Some(match increment {
+                USUAL => nearest(number.digits, USUAL * 1_000) * USUAL,
+                _ => nearest(number.digits, increment * 1_000) * increment,
+            });
+        }
+        if number.scale <= 6 && number.digits.unsigned_abs() < FINE_DIGITS_MAX {
+            // Programs of CAM systems: a digit or two more.
             let nm = number.digits * POWER[usize::from(6 - number.scale)];
-            let increment = self.settings.metric_increment.nm();
             let half = match self.control.policies.fine_digits {
                 FineDigits::Cut => 0,
                 FineDigits::Round if nm < 0 => -increment / 2,
                 FineDigits::Round => increment / 2,
             };
-            let nm = (nm + half) / increment * increment;
-            if nm.abs() < self.settings.length_limit_nm {
-                return Ok(Length::from_nm(nm));
-            }
+            return Some(match increment {
+                USUAL => (nm + half) / USUAL * USUAL,
+                _ => (nm + half) / increment * increment,
+            });
         }
-        if number.is_computed() && !self.modal.is_inch && number.scale == 9 {
-            // Nanometres in an increment, and the thousandths of them that computed values are held to.
-            let nm = match self.settings.metric_increment.nm() {
-                // A division by a known number costs nothing.
-                1_000 => nearest(number.digits, 1_000_000) * 1_000,
-                increment => nearest(number.digits, increment * 1_000) * increment,
-            };
-            if nm.abs() < self.settings.length_limit_nm {
-                return Ok(Length::from_nm(nm));
-            }
-        }
-        self.length_of(word, number, counts)
+        None
     }
 
     /// A number that counts: what was computed is rounded to the nearest whole one.

@@ -206,7 +206,7 @@ fn sine(degrees: f64) -> f64 {
     /// Beyond, neighbouring floats are about as far apart as a quarter turn.
     const FAR: f64 = 1e15;
     let degrees = if degrees.abs() < FAR { degrees } else { degrees % 360.0 };
-    let quarter = (degrees / 90.0 + WHOLE) - WHOLE;
+    let quarter = (degrees * (1.0 / 90.0) + WHOLE) - WHOLE;
     let rest = (degrees - quarter * 90.0).to_radians();
     match quarter as i64 & 3 {
         0 => rest.sin(),

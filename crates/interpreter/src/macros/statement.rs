@@ -66,17 +66,6 @@ pub(crate) enum Statement {
     },
 }
 
-impl Statement {
-    /// Whether it may give out a command or make the caller wait.
-    pub(crate) fn may_speak(&self) -> bool {
-        match self {
-            Self::Assign { target, .. } | Self::IfThen { target, .. } => matches!(target, Target::Number(_)),
-            Self::Output { .. } => true,
-            _ => false,
-        }
-    }
-}
-
 /// Largest sequence number that a jump may name, by digits.
 fn sequence_max(digits: u8) -> f64 {
     10f64.powi(i32::from(digits)) - 1.0
@@ -224,15 +213,23 @@ impl Core {
                 let value = self.evaluate(value, environment)?;
                 let value = self.macros.machine.arithmetic.stored(value);
                 self.macros.variables.set(slot, value);
+                Ok(())
             }
-            Target::Number(target) => {
-                let variable = number(self.evaluate(target, environment)?);
-                let place = self.macros.machine.end_place(target);
-                let value = self.evaluate(value, environment)?;
-                self.write_variable(variable, value, place, environment)?;
-            }
+            Target::Number(target) => self.assign_by_number(target, value, environment),
         }
-        Ok(())
+    }
+
+    #[cold]
+    fn assign_by_number(
+        &mut self,
+        target: Code,
+        value: Code,
+        environment: &mut dyn Environment,
+    ) -> Result<(), Halt> {
+        let variable = number(self.evaluate(target, environment)?);
+        let place = self.macros.machine.end_place(target);
+        let value = self.evaluate(value, environment)?;
+        self.write_variable(variable, value, place, environment)
     }
 
     /// The block behind the one in work comes next.
