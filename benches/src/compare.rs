@@ -65,6 +65,11 @@ pub fn run(blocks: u64, rounds: usize) -> Result<(), String> {
                 peer.cpu_s / mine.cpu_s
             );
         }
+        if name == "loop"
+            && let Some(lua) = lua(blocks, rounds)
+        {
+            print!("   Lua {:.3} s  ratio {:.2}", lua.cpu_s, lua.cpu_s / mine.cpu_s);
+        }
         println!();
         match (name, step) {
             ("lines", "interpret") => once = mine.cpu_s,
@@ -76,6 +81,26 @@ pub fn run(blocks: u64, rounds: usize) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// The loop of P5 in Lua 5.4 with its variables in a table, when that is installed.
+fn lua(loops: u64, rounds: usize) -> Option<Cost> {
+    let script = format!(
+        "local v, sin, rad = {{0, 0, 0.5}}, math.sin, math.rad\n\
+         while v[1] < {loops} do\n\
+         v[2] = v[2] + v[3] * 2.0 - 0.25\n\
+         v[3] = sin(rad(v[1] * 0.1)) + 1.5\n\
+         v[1] = v[1] + 1\n\
+         end"
+    );
+    let costs: Result<Vec<_>, _> = (0..rounds)
+        .map(|_| {
+            let mut command = Command::new("lua5.4");
+            command.args(["-e", &script]);
+            measure(command)
+        })
+        .collect();
+    costs.ok().map(|costs| median(&costs))
 }
 
 fn reading(folder: &Path, rounds: usize) -> Result<(), String> {

@@ -44,8 +44,9 @@ const POWER: [i64; 10] =
 /// Numbers with fewer digits than this are short enough and small enough for every control.
 const FINE_DIGITS_MAX: u64 = 100_000_000;
 
-/// The increment of nearly every control, nanometres: a division by a known number costs little.
+/// The increments of nearly every control, nanometres: a division by a known number costs little.
 const USUAL: i64 = LeastIncrement::METRIC_B.nm();
+const FINE: i64 = LeastIncrement::METRIC_C.nm();
 
 /// How often `step` goes into a number, to the nearest; halves away from zero.
 #[inline]
@@ -92,6 +93,7 @@ impl Core {
             // Nanometres in an increment, and the thousandths of them that computed values are held to.
             return Some(match increment {
                 USUAL => nearest(number.digits, USUAL * 1_000) * USUAL,
+                FINE => nearest(number.digits, FINE * 1_000) * FINE,
                 _ => nearest(number.digits, increment * 1_000) * increment,
             });
         }

@@ -43,8 +43,9 @@ pub(crate) enum Op {
     SlotPlusConstant(u16, f64),
     SlotTimesConstant(u16, f64),
     CompareSlotWithConstant(Comparison, u16, f64),
-    /// A constant on the left of what cannot be turned round.
+    /// What stands on the left of a difference, the accumulator being its right side.
     SubtractFromConstant(f64),
+    SubtractFromSlot(u16),
     /// What was pushed last, and the accumulator.
     Binary(BinaryOperator),
     Call(Function),
@@ -263,6 +264,7 @@ impl Machine {
                 Op::SubtractConstant(constant) => Ok(value - constant),
                 Op::SubtractSlot(place) => Ok(value - slot(place)),
                 Op::SubtractFromConstant(constant) => Ok(constant - value),
+                Op::SubtractFromSlot(place) => Ok(slot(place) - value),
                 Op::MultiplyConstant(constant) => Ok(value * constant),
                 Op::MultiplySlot(place) => Ok(value * slot(place)),
                 Op::SlotPlusConstant(place, constant) => Ok(slot(place) + constant),
@@ -419,11 +421,15 @@ impl Compiler<'_> {
             machine.emit(op, place);
             return Ok(());
         }
-        // A constant on the left: the right side first, so that nothing has to be held.
-        let turned = match (operator, constants.0.map(number)) {
-            (B::Add, Some(constant)) => Some(Op::AddConstant(constant)),
-            (B::Subtract, Some(constant)) => Some(Op::SubtractFromConstant(constant)),
-            (B::Multiply, Some(constant)) => Some(Op::MultiplyConstant(constant)),
+        // A constant or variable on the left of something longer: the right side first, so that nothing has to be held.
+        let is_long = constants.1.is_none() && slots.1.is_none();
+        let turned = match (operator, constants.0.map(number), slots.0) {
+            (B::Add, Some(constant), _) => Some(Op::AddConstant(constant)),
+            (B::Subtract, Some(constant), _) => Some(Op::SubtractFromConstant(constant)),
+            (B::Multiply, Some(constant), _) => Some(Op::MultiplyConstant(constant)),
+            (B::Add, _, Some(slot)) if is_long => Some(Op::AddSlot(slot)),
+            (B::Subtract, _, Some(slot)) if is_long => Some(Op::SubtractFromSlot(slot)),
+            (B::Multiply, _, Some(slot)) if is_long => Some(Op::MultiplySlot(slot)),
             _ => None,
         };
         if let Some(op) = turned {
