@@ -401,6 +401,20 @@ policies! {
         /// Always towards plus.
         AlwaysPlus,
     }
+    /// A peck of zero in a drilling cycle.
+    zero_peck: ZeroPeck {
+        /// Refused.
+        Alarm,
+        /// The hole is drilled in one go.
+        NoPecks,
+    }
+    /// What the word for the way of pecking means, on controls whose drilling cycles have one.
+    peck_mode_word: PeckModeWord {
+        /// 0 goes back by the retract, 1 to the start level.
+        ZeroIsShort,
+        /// 1 goes back by the retract, 0 to the start level.
+        OneIsShort,
+    }
     /// How the least depth limits the passes of the threading cycle.
     thread_depth_clamp: ThreadDepthClamp {
         /// Each increment is at least the least depth: depths add up.

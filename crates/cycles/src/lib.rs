@@ -37,6 +37,7 @@
 mod figure;
 mod groove;
 mod heights;
+mod hole;
 mod misuse;
 mod pattern;
 mod plane;
@@ -51,6 +52,7 @@ pub use figure::{
     hump_before_end, monotony_fault, start_inside_fault, turn_back_fault,
 };
 pub use groove::{Groove, GrooveRequest, PeckAxis, ReliefDirection, groove};
+pub use hole::{Clamping, Hole, HoleRequest, HoleWork, Peck, PeckRetract, Tap, hole};
 pub use misuse::Misuse;
 pub use pattern::{Pattern, PatternRequest, SinglePass, pattern};
 pub use pockets::{BottomEscape, Hump, PocketRequest, PocketRoughing, rough_pockets};
@@ -70,7 +72,7 @@ use turnwright_units::{Feed, LeastIncrement, Position, WorkTip};
 /// One move of a cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CycleMove {
-    /// The move itself: always one with an end point.
+    /// The move itself; hole cycles also dwell, turn the spindle and clamp.
     pub action: Action,
     /// What it is for.
     pub phase: Phase,
@@ -114,12 +116,17 @@ impl Tool {
         Self { at }
     }
 
+    /// Where it stands.
+    pub(crate) const fn at(&self) -> Position<WorkTip> {
+        self.at
+    }
+
     /// Follows the move; false when it goes nowhere. An arc back to its start is a full circle.
     pub(crate) fn goes(&mut self, step: &CycleMove) -> bool {
         let Some(to) = step.action.end_point() else { return true };
         let circle =
             matches!(&step.action, Action::Feed { shape: Shape::Arc { centre, .. }, .. } if *centre != to);
-        let goes = circle || to != self.at;
+        let goes = circle || to != self.at || step.action.others().is_some();
         self.at = to;
         goes
     }

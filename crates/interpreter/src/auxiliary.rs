@@ -151,6 +151,7 @@ impl Core {
             }
             other => {
                 self.change_gear(other);
+                self.note_rigid_code(other, word)?;
                 auxiliary.others[usize::from(auxiliary.other_count)] = other;
                 auxiliary.other_count += 1;
             }
@@ -306,7 +307,7 @@ impl Auxiliary {
 
     /// Gives out what acts at the start of the move.
     #[inline]
-    pub(crate) fn emit_before(&self, core: &mut Core) {
+    pub(crate) fn emit_before(&self, core: &mut Core, block: &Block) {
         if self.count == 0 {
             return;
         }
@@ -315,6 +316,9 @@ impl Auxiliary {
             core.emit(Action::Coolant(coolant));
         }
         for code in &self.others[..usize::from(self.other_count)] {
+            if core.clamps_for_hole(*code, block) {
+                continue;
+            }
             core.axes.machine_code(*code);
             core.emit(Action::Auxiliary { code: *code });
         }

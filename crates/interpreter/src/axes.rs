@@ -396,7 +396,7 @@ impl Core {
     }
 
     /// Takes the ends of a move as the places of the other axes; gives those that the move changes.
-    fn take_along(
+    pub(crate) fn take_along(
         &mut self,
         to: Position<WorkTip>,
         shape: &Shape,

@@ -155,7 +155,7 @@ impl Core {
         if block.present() & SPEED_OR_TOOL != 0 || self.spindle_may_change(&codes, &auxiliary) {
             self.speed_and_tool(block, &codes, &auxiliary)?;
         }
-        auxiliary.emit_before(self);
+        auxiliary.emit_before(self, block);
         let waiting_corner = self.corner.is_some();
         let mut moves = false;
         let call = |word, code, environment| Call { block, environment, code, word };
@@ -341,6 +341,9 @@ impl Core {
     #[inline]
     pub(crate) fn change_motion(&mut self, id: FunctionId, code: u16) {
         if self.modal.motion != id {
+            if id.get().is_hole_cycle || self.modal.hole.is_some() {
+                self.change_hole_cycle(id, (self.modal.motion, self.modal.motion_code));
+            }
             self.modal.motion = id;
             self.forget_single_cycle();
         }
@@ -447,6 +450,7 @@ impl Core {
         if let Some(word) = block.word(b'S')
             && !limits_speed
         {
+            self.check_speed_before_tap(block, word)?;
             self.speed_word(word)?;
         }
         if let Some(word) = block.word(b'T')

@@ -7,6 +7,7 @@ use turnwright_units::{LeastIncrement, Length, Position, Radius, Rpm, SurfaceSpe
 
 use crate::axes::Plane;
 use crate::functions::FunctionId;
+use crate::functions::hole::{HoleInForce, HoleSettings};
 use crate::functions::multi_thread::RunOutWords;
 use crate::in_force::InForce;
 use crate::offsets::{OffsetInForce, OffsetSettings};
@@ -74,6 +75,12 @@ pub(crate) struct Modal {
     /// Work coordinate system: 0 to 5 are the standard ones, the additional ones follow.
     pub(crate) work: usize,
     pub(crate) cycle: SingleCycle,
+    /// The hole cycle in force.
+    pub(crate) hole: Option<HoleInForce>,
+    /// Systems B and C: hole cycles stay at the R point.
+    pub(crate) stays_at_r: bool,
+    /// Rigid tapping is announced, its cycle is still to come.
+    pub(crate) awaits_rigid_tap: bool,
     /// Systems B and C: X and Z are increments.
     pub(crate) is_incremental: bool,
     /// The second stroke check looks at moves.
@@ -189,6 +196,7 @@ pub(crate) struct Settings {
     pub(crate) pocket_clearance: Length,
     pub(crate) follows_pocket_bottom: bool,
     pub(crate) rapid_escape: bool,
+    pub(crate) hole: HoleSettings,
     pub(crate) offsets: OffsetSettings,
 }
 
@@ -337,6 +345,7 @@ impl Settings {
             pocket_clearance: mm("cycle-clearance"),
             follows_pocket_bottom: bit("pocket-bottom-follow"),
             rapid_escape: bit("rapid-escape"),
+            hole: HoleSettings::new(parameters),
             offsets: OffsetSettings::new(parameters),
         }
     }

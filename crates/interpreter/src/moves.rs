@@ -2,8 +2,8 @@
 
 use turnwright_canon::{Action, Command, Curve, CycleLabel, CycleOrigin, Origin, RapidPath, Shape, Turn};
 use turnwright_cycles::{
-    BoxCycle, CycleMove, Element, FigureMotion, Groove, Pattern, PocketRoughing, Roughing, SemiFinished,
-    ThreadOnce, Threading,
+    BoxCycle, CycleMove, Element, FigureMotion, Groove, Hole, Pattern, PocketRoughing, Roughing,
+    SemiFinished, ThreadOnce, Threading,
 };
 use turnwright_diagnostics::Diagnostic;
 use turnwright_units::{Feed, FeedPerMinute, FeedPerRevolution, Position, WorkTip};
@@ -38,6 +38,7 @@ pub(crate) enum CycleMoves {
     SemiFinishedPockets(Box<SemiFinished<PocketRoughing>>),
     Pattern(Box<Pattern>),
     Groove(Box<Groove>),
+    Hole(Box<Hole>),
     Threading(Box<Threading>),
     Box(Box<BoxCycle>),
     ThreadOnce(Box<ThreadOnce>),
@@ -52,6 +53,7 @@ impl CycleMoves {
             Self::SemiFinishedPockets(cycle) => cycle.next(),
             Self::Pattern(cycle) => cycle.next(),
             Self::Groove(cycle) => cycle.next(),
+            Self::Hole(cycle) => cycle.next(),
             Self::Threading(cycle) => cycle.next(),
             Self::Box(cycle) => cycle.next(),
             Self::ThreadOnce(cycle) => cycle.next(),
@@ -66,6 +68,7 @@ impl CycleMoves {
             Self::SemiFinishedPockets(cycle) => cycle.move_estimate(),
             Self::Pattern(cycle) => cycle.move_estimate(),
             Self::Groove(cycle) => cycle.move_estimate(),
+            Self::Hole(cycle) => cycle.move_estimate(),
             Self::Threading(cycle) => cycle.move_estimate(),
             Self::Box(cycle) => cycle.move_estimate(),
             Self::ThreadOnce(cycle) => cycle.move_estimate(),

@@ -75,6 +75,8 @@ impl Core {
             }
         }
         if clears {
+            self.leave_hole_cycle();
+            self.modal.stays_at_r = false;
             self.modal.motion_code = self.dispatch.codes_at_power_on[MOTION].unwrap_or_default();
             self.modal.motion =
                 if self.settings.linear_at_power_on { FunctionId::LINEAR } else { FunctionId::RAPID };

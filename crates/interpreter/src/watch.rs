@@ -1,7 +1,7 @@
 //! What happens to a move between the program and the machine, when anything does.
 //!
 //! Mirror and rotation carry it into work coordinates, the stroke checks may refuse it, and before the reference
-//! return no axis moves. Nearly every program has none of these; one flag keeps them off its way.
+//! return, or once rigid tapping is announced, no axis moves. Nearly every program has none of these; one flag keeps them off its way.
 //!
 //! Source: stored stroke checks, mirror, rotation and reference return of both families.
 
@@ -17,7 +17,8 @@ impl Core {
         self.looks_at_moves = self.transform.is_on()
             || self.strokes.is_armed(self.modal.stroke_two_is_on)
             || self.settings.cutting_feed_is_barred
-            || self.lacks_reference();
+            || self.lacks_reference()
+            || self.modal.awaits_rigid_tap;
     }
 
     /// No axis may move yet.
@@ -35,6 +36,9 @@ impl Core {
             && matches!(action, Action::Feed { .. } | Action::Thread { .. })
         {
             return Err(self.alarm_block("cutting-feed-limit-zero"));
+        }
+        if self.modal.awaits_rigid_tap {
+            return Err(self.alarm_block("rigid-tap-axis-move"));
         }
         let action = if self.transform.is_on() {
             self.transform.action(action, self.modal.increment(&self.settings))

@@ -5,8 +5,8 @@ mod support;
 use support::{Conditions, Run, run_on};
 use turnwright_control::Control;
 use turnwright_control::policy::{
-    CycleForm, FeedPerRevolution, MissingPoint, NestedComment, OneShotWithMotion, Policies, RepeatedAddress,
-    SpeedLimitAtReset, StoppingCodes,
+    CycleForm, FeedPerRevolution, MissingPoint, NestedComment, OneShotWithMotion, PeckModeWord, Policies,
+    RepeatedAddress, SpeedLimitAtReset, StoppingCodes,
 };
 
 fn run_with(text: &str, restarts: u32, change: impl FnOnce(&mut Policies)) -> Run {
@@ -102,4 +102,13 @@ fn cycles_may_be_read_in_one_form_only() {
     assert_eq!(run(one, "0"), "alarm PS0066 cycle-word-illegal 2:10-13\n");
     assert_eq!(run(two, "1"), "alarm PS0066 cycle-word-illegal 2:10-15\n");
     assert_eq!((run(one, "1"), run(two, "0")), (String::new(), String::new()));
+}
+
+#[test]
+fn the_word_for_the_way_of_pecking_may_be_the_other_way_round() {
+    let text = "G0 X0 Z2 M3 S500\nG83 Z-5 Q5000 R1 J1 F100\nM30\n";
+    let mut control = Control::load("gsk-980tdi").expect("a control");
+    control.policies.peck_mode_word = PeckModeWord::OneIsShort;
+    let run = run_on(control, text.as_bytes(), &Conditions::on("gsk-980tdi"));
+    assert!(run.listing().contains("rapid d0 z-2  G83 back 1\nfeed d0 z-5"), "{}", run.listing());
 }

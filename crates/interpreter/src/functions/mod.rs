@@ -14,6 +14,8 @@ mod dwell;
 mod finishing;
 mod fluctuation;
 mod groove;
+pub(crate) mod hole;
+mod hole_tap;
 mod interpolation;
 mod linear;
 mod look_ahead;
@@ -94,6 +96,8 @@ pub(crate) struct Function {
     pub(crate) in_rotation: bool,
     /// One of the multiple repetitive cycles: a foreign letter has an alarm of its own.
     pub(crate) is_multiple_cycle: bool,
+    /// A hole cycle, in force until another motion code or the code that cancels it.
+    pub(crate) is_hole_cycle: bool,
     /// Its lines may be given by their angle.
     pub(crate) draws_lines: bool,
     /// Its blocks are single moves: see [`plain`](crate::plain).
@@ -129,6 +133,7 @@ impl Function {
             keeps_single_cycle: false,
             in_rotation: false,
             is_multiple_cycle: false,
+            is_hole_cycle: false,
             draws_lines: false,
             is_path: false,
         }
@@ -228,6 +233,16 @@ impl Function {
         self
     }
 
+    pub(crate) const fn hole_cycle(mut self) -> Self {
+        self.is_hole_cycle = true;
+        self.with_other_axes().allowed_in_rotation().with_letters(b"RQPKJD").triggered_by(b"RQPKJD")
+    }
+
+    /// A tapping cycle.
+    pub(crate) fn is_tapping(&self) -> bool {
+        matches!(self.name, "face-tapping" | "side-tapping")
+    }
+
     /// A turning, facing or thread cycle of one block.
     pub(crate) fn is_single_cycle(&self) -> bool {
         matches!(self.name, "turning-cycle" | "thread-cycle" | "facing-cycle")
@@ -291,7 +306,17 @@ static ALL: &[&Function] = &[
     &interpolation::CYLINDRICAL,
     &polygon::POLYGON_ON,
     &polygon::POLYGON_OFF,
-    &modes::HOLE_CYCLE_OFF,
+    &hole::HOLE_CYCLE_OFF,
+    &hole::RETURN_TO_START_LEVEL,
+    &hole::RETURN_TO_R_LEVEL,
+    &hole::FACE_DRILLING,
+    &hole::SIDE_DRILLING,
+    &hole::FACE_DRILLING_WITH_RETRACT,
+    &hole::SIDE_DRILLING_WITH_RETRACT,
+    &hole::FACE_TAPPING,
+    &hole::SIDE_TAPPING,
+    &hole::FACE_BORING,
+    &hole::SIDE_BORING,
     &path_mode::EXACT_STOP,
     &path_mode::EXACT_STOP_MODE,
     &path_mode::TAPPING_MODE,

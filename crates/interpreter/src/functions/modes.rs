@@ -21,10 +21,6 @@ pub(super) static METRIC: Function = Function::mode("metric", |core, call| units
 pub(super) static NOSE_COMPENSATION_OFF: Function =
     Function::mode("nose-compensation-off", |_, _| Ok(())).allowed_in_figure().allowed_in_rotation();
 
-// These cancel modes that nothing in this version can switch on: they are in force already.
-pub(super) static HOLE_CYCLE_OFF: Function =
-    Function::mode("hole-cycle-off", |_, _| Ok(())).allowed_in_rotation();
-
 pub(super) static WORK_COORDINATES_1: Function =
     Function::mode("work-coordinates-1", |core, _| work(core, 0));
 pub(super) static WORK_COORDINATES_2: Function =

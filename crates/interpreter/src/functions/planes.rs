@@ -33,6 +33,9 @@ fn plane(core: &mut Core, call: &mut Call<'_>, plane: Plane) -> Result<(), Alarm
     if plane != core.axes.plane && core.is_compensating() {
         return Err(core.alarm_at("plane-change-in-compensation", call.word));
     }
+    if plane != core.axes.plane {
+        core.check_plane_before_tap(call.word)?;
+    }
     core.axes.plane = plane;
     Ok(())
 }
