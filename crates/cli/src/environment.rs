@@ -244,6 +244,8 @@ pub(crate) struct Panel<'a> {
     text: &'a ProgramText,
     /// Programs in other files that were called; the first is source 1.
     others: Vec<ProgramText>,
+    /// Numbers of programs that were looked for and found, each with its source.
+    found: Vec<(u32, SourceId)>,
     skips: [bool; 10],
     stops_optionally: bool,
     speech: Speech,
@@ -262,11 +264,25 @@ impl<'a> Panel<'a> {
         Self {
             text,
             others: Vec::new(),
+            found: Vec::new(),
             skips,
             stops_optionally: machine.optional_stop,
             speech,
             setup: setup.clone(),
         }
+    }
+
+    /// The source of a program that another file of the folder holds.
+    fn look_for(&mut self, name: ProgramName<'_>) -> Option<SourceId> {
+        let path = file_beside(self.text.path.as_deref()?, name)?;
+        if let Some(known) = self.others.iter().position(|other| other.path.as_deref() == Some(&path)) {
+            return Some(SourceId(known as u32 + 1));
+        }
+        if self.others.len() >= OTHERS_MAX {
+            return None;
+        }
+        self.others.push(ProgramText::open(&path, self.speech).ok()?);
+        Some(SourceId(self.others.len() as u32))
     }
 
     /// A text by its number.
@@ -317,15 +333,14 @@ impl Environment for Panel<'_> {
     }
 
     fn program(&mut self, name: ProgramName<'_>) -> Option<SourceId> {
-        let path = file_beside(self.text.path.as_deref()?, name)?;
-        if let Some(known) = self.others.iter().position(|other| other.path.as_deref() == Some(&path)) {
-            return Some(SourceId(known as u32 + 1));
+        let ProgramName::Number(number) = name else { return self.look_for(name) };
+        // A loop asks again and again.
+        if let Some((_, source)) = self.found.iter().find(|(known, _)| *known == number) {
+            return Some(*source);
         }
-        if self.others.len() >= OTHERS_MAX {
-            return None;
-        }
-        self.others.push(ProgramText::open(&path, self.speech).ok()?);
-        Some(SourceId(self.others.len() as u32))
+        let source = self.look_for(name)?;
+        self.found.push((number, source));
+        Some(source)
     }
 
     fn now(&self) -> Option<DateTime> {

@@ -124,6 +124,12 @@ impl<'a> Execution<'a> {
         self.text
     }
 
+    /// Name of the file behind the number of a source, unless it is the program itself.
+    #[inline]
+    pub(crate) fn other_file(&self, source: u32) -> Option<&str> {
+        (source != 0).then(|| self.panel.source(SourceId(source)).name.as_str())
+    }
+
     /// The interpreter.
     pub(crate) fn interpreter(&self) -> &Interpreter {
         &self.interpreter

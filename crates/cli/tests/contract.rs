@@ -23,6 +23,20 @@ fn the_exit_status_says_what_was_found() {
 }
 
 #[test]
+fn the_trace_names_the_file_of_a_line_that_another_file_holds() {
+    let folder = Folder::new();
+    let main = folder.file("main.nc", "O1\nM98 P2\nG00 X10. Z0\nM98 P2\nM30\n");
+    let other = folder.file("O0002.nc", "O2\nG00 X20. Z1.\nIF[#100EQ1]GOTO99\n#100=1\nM99\n");
+    let ran = turnwright(&["trace", &main, "--format", "jsonl"]);
+    let lines = json_lines(&ran.out);
+    let files: Vec<_> =
+        lines[1..].iter().map(|line| (line["line"].as_u64(), line["file"].as_str())).collect();
+    let other = Some(other.as_str());
+    assert_eq!(files, [(Some(2), other), (Some(3), None), (Some(2), other), (Some(3), other)]);
+    assert_eq!(lines[4]["key"], "jump-target-not-found");
+}
+
+#[test]
 fn diagnostics_go_to_standard_error_for_people_and_to_standard_output_for_scripts() {
     let folder = Folder::new();
     let alarms = folder.file("alarms.nc", ALARMS);

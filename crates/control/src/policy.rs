@@ -502,9 +502,17 @@ policies! {
         /// Those and `RAND`, `SRAND`.
         ExtendedWithRandom,
     }
+    /// Conditions of `IF` and `WHILE` joined by `AND`, `OR` and `XOR`.
+    joined_conditions: JoinedConditions {
+        /// Refused: a condition is one comparison.
+        Refused,
+        /// Taken: `IF[[#1EQ1]AND[#2EQ2]]`. From memory for the GSK controls.
+        Taken,
+    }
     /// How precisely variables are kept.
     macro_precision: MacroPrecision {
-        /// Eight significant digits, up to 10^47.
+        /// Eight significant digits, up to 10^47. What is stored is cut to them; inside an expression more digits
+        /// are carried, as the manuals' error of a single operation (parts in 10^10, from memory) asks for.
         EightDigits,
         /// Double precision.
         Double,
@@ -615,6 +623,23 @@ policies! {
         CountAndNumber,
         /// Refused; so is a count given twice.
         FourDigits,
+    }
+    /// Names of programs beside their numbers.
+    program_names: ProgramNames {
+        /// There are none.
+        None,
+        /// `O<NAME>` heads a program, `M98 <NAME>` and `G65 <NAME>` call it.
+        InAngles,
+        /// `M98 P[NAME]` and `G65 P[NAME]` call the file of that name. Several programs in one text are headed
+        /// by `O<NAME>`, a way of writing of ours: on the control each is a file.
+        InBrackets,
+    }
+    /// `Q` beside `M98`: the block of the program to begin with.
+    call_entry: CallEntry {
+        /// There is none.
+        Absent,
+        /// It is taken.
+        ByWord,
     }
     /// `M98` without a program.
     call_without_program: CallWithoutProgram {

@@ -8,7 +8,7 @@
 //! Source: the M functions that the control itself acts on and the order of actions in a block, both families.
 
 use turnwright_canon::{Action, Coolant, SpindleState};
-use turnwright_control::policy::{AuxiliaryCombination, StoppingCodes};
+use turnwright_control::policy::{AuxiliaryCombination, CallEntry, StoppingCodes};
 use turnwright_syntax::{Block, Word};
 
 use crate::Environment;
@@ -91,6 +91,12 @@ impl Core {
         let called = self.subprogram_of(number);
         let is_call = called.is_some() || matches!(number, code::CALL | code::CALL_EXTERNAL);
         let (interrupt_on, interrupt_off) = self.macros.interrupt_codes;
+        if is_call
+            && self.control.policies.call_entry == CallEntry::Absent
+            && let Some(entry) = block.word(b'Q')
+        {
+            return Err(self.alarm("illegal-address", entry));
+        }
         let is_flow = is_call
             || matches!(
                 number,
@@ -263,6 +269,11 @@ impl Core {
 }
 
 impl Core {
+    /// Whether an M code calls the program that its block names.
+    pub(crate) const fn is_call_code(&self, number: u32) -> bool {
+        matches!(number, code::CALL | code::CALL_EXTERNAL)
+    }
+
     /// The subprogram that an M code calls by parameter, outside programs that were called that way.
     fn subprogram_of(&self, number: u32) -> Option<u32> {
         if !self.macros.calls.has_auxiliary() || self.is_called_by_code() {
@@ -279,8 +290,7 @@ impl Auxiliary {
             Some((Flow::Call | Flow::CallExternal, _)) => {
                 Block::bit(b'P') | Block::bit(b'L') | Block::bit(b'Q')
             }
-            Some((Flow::InterruptOn, _)) => Block::bit(b'P'),
-            Some((Flow::Return, _)) => Block::bit(b'P') | Block::bit(b'L'),
+            Some((Flow::InterruptOn | Flow::Return, _)) => Block::bit(b'P'),
             _ => 0,
         }
     }

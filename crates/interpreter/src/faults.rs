@@ -4,7 +4,9 @@
 //!
 //! Source: words and numbers, several words with one address, both families.
 
-use turnwright_control::policy::{NestedComment, RepeatedAddress, RepeatedSpeedWord, UnnumberedProgram};
+use turnwright_control::policy::{
+    NestedComment, ProgramNames, RepeatedAddress, RepeatedSpeedWord, UnnumberedProgram,
+};
 use turnwright_diagnostics::{Diagnostic, Severity};
 use turnwright_syntax::{Block, ExtentKind, Fault, FaultKind, Word};
 
@@ -15,6 +17,10 @@ impl Core {
     #[cold]
     pub(crate) fn report_faults(&mut self, block: &Block) -> Result<(), Alarm> {
         for fault in &block.faults {
+            if fault.kind == FaultKind::ProgramName {
+                self.check_program_name(block, fault)?;
+                continue;
+            }
             let (key, severity) = self.fault_key(fault);
             if severity == Severity::Alarm {
                 return Err(self.fault_alarm(key, fault));
@@ -28,6 +34,26 @@ impl Core {
             }
         }
         Ok(())
+    }
+
+    /// A name in angle brackets heads a program, or is called where the control calls programs that way.
+    fn check_program_name(&self, block: &Block, fault: &Fault) -> Result<(), Alarm> {
+        let heads = block.has(b'O') || (block.words.is_empty() && self.expects_program_number);
+        let calls = |word: &Word| match word.address {
+            b'M' => self.whole(word, u32::MAX).is_ok_and(|code| self.is_call_code(code)),
+            b'G' => self.calls_macro(word),
+            _ => false,
+        };
+        let is_known = match self.control.policies.program_names {
+            ProgramNames::None => false,
+            ProgramNames::InBrackets => heads,
+            ProgramNames::InAngles => heads || block.words.iter().any(calls),
+        };
+        match (is_known, heads) {
+            (true, _) => Ok(()),
+            (false, true) => Err(self.fault_alarm("program-number-illegal", fault)),
+            (false, false) => Err(self.fault_alarm("illegal-address", fault)),
+        }
     }
 
     /// The diagnostic of a fault that the reader found.
@@ -56,6 +82,8 @@ impl Core {
             FaultKind::NestedComment => ("nested-comment", Warning),
             FaultKind::TextAfterSemicolon => ("text-after-semicolon", Warning),
             FaultKind::FullWidth => ("full-width-character", Warning),
+            // Asked of the control before.
+            FaultKind::ProgramName => ("illegal-address", Alarm),
         }
     }
 

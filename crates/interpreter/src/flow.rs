@@ -4,7 +4,7 @@
 //! `macros/`. Source: subprograms and program ends of both families.
 
 use turnwright_canon::{Action, CycleLabel, CycleOrigin, Phase};
-use turnwright_control::policy::{CallWithoutProgram, ComputedProgramNumber};
+use turnwright_control::policy::{CallWithoutProgram, ComputedProgramNumber, ProgramNames};
 use turnwright_diagnostics::{Diagnostic, SourceId};
 use turnwright_syntax::{Block, ExtentKind, Value, Word};
 use turnwright_units::{Position, WorkTip};
@@ -359,6 +359,9 @@ impl Core {
 
     /// The name between square brackets, when it can be one.
     pub(crate) fn name_in_brackets(&self, start: u32, end: u32) -> Option<String> {
+        if self.control.policies.program_names != ProgramNames::InBrackets {
+            return None;
+        }
         let text = self.line_bytes().get(start as usize..end as usize)?;
         let inner = text.strip_prefix(b"[")?.strip_suffix(b"]")?;
         let is_name = !inner.is_empty()
@@ -500,7 +503,7 @@ impl Core {
 
     /// With a modal call in force a return stands alone.
     fn check_return_words(&self, block: &Block) -> Result<(), Alarm> {
-        match block.words.iter().find(|word| !matches!(word.address, b'O' | b'N' | b'P' | b'L' | b'M')) {
+        match block.words.iter().find(|word| !matches!(word.address, b'O' | b'N' | b'P' | b'M')) {
             Some(word) => Err(self.alarm("return-block-with-words", word)),
             None => Ok(()),
         }

@@ -57,7 +57,7 @@ impl Core {
             if at.is_none_or(|feed| word.start > feed.start) {
                 at = Some(word);
                 match letter {
-                    b'E' => self.modal.feed = Some(lead),
+                    b'E' => (self.modal.feed, self.modal.feed_is_lead) = (Some(lead), true),
                     _ => self.modal.lead_by_count = Some(lead),
                 }
             }

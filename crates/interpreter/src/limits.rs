@@ -3,15 +3,21 @@
 /// Blocks executed in one run (`block-limit-reached`).
 pub const BLOCKS_MAX: u64 = 30_000_000;
 
-/// Blocks of loops executed without any command (`loop-without-motion`). A block that has to be read anew counts
+/// Blocks of loops executed without a move (`loop-without-motion`). A block that has to be read anew counts
 /// for [`IDLE_READ_BLOCKS`].
-pub const IDLE_BLOCKS_MAX: u64 = 16_000_000;
+pub const IDLE_BLOCKS_MAX: u64 = 8_000_000;
 
 /// What a block of a loop that is not kept counts for, against the limit above: as much as it takes.
 pub const IDLE_READ_BLOCKS: u64 = 10;
 
 /// What a kept block of words counts for beyond itself.
 pub const IDLE_WORD_BLOCKS: u64 = 3;
+
+/// What looking a computed label up, or asking for a system variable, counts for beyond its block.
+pub const IDLE_LOOK_UPS: u64 = 2;
+
+/// Texts that calls lead to and fro between without reading them anew.
+pub const PARKED_TEXTS_MAX: usize = 8;
 
 /// What a call counts for beyond its block.
 pub const IDLE_CALLS: u64 = 60;

@@ -76,7 +76,7 @@ impl From<Alarm> for Halt {
 pub struct Options {
     /// Blocks executed before the run is stopped.
     pub blocks_max: u64,
-    /// Blocks of loops executed without any command before the run is stopped.
+    /// Blocks of loops executed without a move before the run is stopped.
     pub idle_blocks_max: u64,
 }
 
@@ -177,7 +177,7 @@ pub(crate) struct Core {
     /// Moves meet in another way, and no command told it.
     pub(crate) has_untold_path_mode: bool,
     pub(crate) blocks_run: u64,
-    /// Blocks of loops executed since the last command.
+    /// Blocks of loops executed since the last move.
     pub(crate) idle_blocks: u64,
     /// The moves given out so far are done: the caller was told to wait for them.
     pub(crate) moves_done: bool,
@@ -245,6 +245,7 @@ impl Interpreter {
             is_inch: bit("inch-input"),
             feed_mode: settings.feed_mode_at_power_on,
             feed: None,
+            feed_is_lead: false,
             path_mode: PathMode::default(),
             lead_by_count: None,
             speed_mode: SpeedMode::Constant,
@@ -376,7 +377,9 @@ impl Interpreter {
     pub fn step(&mut self, environment: &mut dyn Environment) -> Step {
         loop {
             if let Some(command) = self.core.out.pop_front() {
-                self.core.idle_blocks = 0;
+                if command.action.end_point().is_some() {
+                    self.core.idle_blocks = 0;
+                }
                 self.core.moves_done = false;
                 return Step::Emit(command);
             }

@@ -56,6 +56,8 @@ pub(crate) struct Modal {
     pub(crate) feed_mode: FeedMode,
     /// The feed word in force: mm per minute or per revolution.
     pub(crate) feed: Option<Length>,
+    /// A thread gave it: it is a lead.
+    pub(crate) feed_is_lead: bool,
     pub(crate) path_mode: PathMode,
     /// The lead that threads per inch gave, until a thread has another.
     pub(crate) lead_by_count: Option<Length>,

@@ -186,7 +186,7 @@ impl Core {
         self.finish(diagnostic)
     }
 
-    /// Counts a block of a loop; commands given out start the count anew.
+    /// Counts a block of a loop; moves given out start the count anew.
     #[inline]
     pub(crate) fn count_idle(&mut self, weight: u64) -> Result<(), Alarm> {
         self.idle_blocks += weight;

@@ -150,7 +150,7 @@ impl Core {
 
     /// A feed above what the machine cuts with is said once.
     pub(crate) fn check_cutting_speed(&mut self) {
-        let Some(feed) = self.feed_in_force() else { return };
+        let Some(feed) = self.feed_in_force().filter(|_| !self.modal.feed_is_lead) else { return };
         let mm_per_min = match feed {
             Feed::PerMinute(feed) => feed.0.to_mm(),
             Feed::PerRevolution(_) if self.modal.spindle == SpindleState::Stop => return,

@@ -15,8 +15,9 @@
 
 use turnwright_canon::{Action, RapidPath, Shape, Turn};
 use turnwright_control::{Axis, Parameters};
-use turnwright_diagnostics::Diagnostic;
+use turnwright_diagnostics::{Diagnostic, Place};
 use turnwright_geometry::{Point, sweep_rad};
+use turnwright_syntax::{Block, scan_block};
 use turnwright_units::{Diameter, Length, MachineTurret, Position, Radius, WorkTip};
 
 use crate::machine::Core;
@@ -336,7 +337,20 @@ impl Core {
     /// `leaves`: the limit that is passed lies on the side to which the axis moves, else on the other.
     fn stroke_alarm(&self, key: &'static str, breach: Breach, area: &Area, leaves: bool) -> Alarm {
         let limit = area.limit(breach.axis, breach.is_plus == leaves);
-        let diagnostic = Diagnostic::alarm(key).at(self.block_place()).with("axis", breach.axis.letter());
+        let place = self.place_of_axis(breach.axis).unwrap_or_else(|| self.block_place());
+        let diagnostic = Diagnostic::alarm(key).at(place).with("axis", breach.axis.letter());
         self.finish(diagnostic.with("limit", limit))
+    }
+
+    /// The word of the block in work that sends an axis somewhere.
+    fn place_of_axis(&self, axis: Axis) -> Option<Place> {
+        let letters = match axis {
+            Axis::X => [b'X', b'U'],
+            Axis::Z => [b'Z', b'W'],
+        };
+        let mut block = Block::new();
+        scan_block(self.line_bytes(), self.at.first_byte as usize, &mut block);
+        let word = block.words.iter().rfind(|word| !word.comma && letters.contains(&word.address))?;
+        Some(self.place(word))
     }
 }

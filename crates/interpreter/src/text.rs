@@ -6,7 +6,7 @@
 use turnwright_diagnostics::SourceId;
 use turnwright_syntax::find_line_end;
 
-use crate::limits::HELD_TEXT_BYTES_MAX;
+use crate::limits::{HELD_TEXT_BYTES_MAX, PARKED_TEXTS_MAX};
 use crate::{Environment, ReadFault};
 
 /// Longest line that is read; a control takes a few hundred characters.
@@ -55,6 +55,17 @@ pub(crate) struct Text {
     held: Vec<SourceId>,
     /// The window begins at the start of the text and lets go of nothing.
     is_held: bool,
+    /// Held texts that a call or a return has left, the one left last behind the others.
+    parked: Vec<Parked>,
+}
+
+/// The window on a held text that another one is read instead of.
+#[derive(Debug)]
+struct Parked {
+    source: SourceId,
+    buffer: Vec<u8>,
+    filled: usize,
+    is_last: bool,
 }
 
 impl Text {
@@ -69,6 +80,7 @@ impl Text {
             is_last: false,
             head: Vec::new(),
             held: Vec::new(),
+            parked: Vec::new(),
             is_held: false,
         }
     }
@@ -98,15 +110,38 @@ impl Text {
         let is_near = (self.base..=end).contains(&to.offset) || (self.is_held && self.base <= to.offset);
         if to.source == self.source && is_near {
             self.at = (to.offset - self.base) as usize;
-        } else {
-            self.source = to.source;
-            self.filled = 0;
-            self.is_last = false;
-            self.is_held = self.held.contains(&to.source);
-            // Of a held text everything before the place is read too, once.
-            self.base = if self.is_held { 0 } else { to.offset };
-            self.at = (to.offset - self.base) as usize;
+            return;
         }
+        if to.source != self.source {
+            self.park();
+        }
+        self.source = to.source;
+        self.is_held = self.held.contains(&to.source);
+        (self.filled, self.is_last) = (0, false);
+        if let Some(place) = self.parked.iter().position(|parked| parked.source == to.source) {
+            let Parked { buffer, filled, is_last, .. } = self.parked.remove(place);
+            (self.buffer, self.filled, self.is_last) = (buffer, filled, is_last);
+        }
+        // Of a held text everything before the place is read too, once.
+        self.base = if self.is_held { 0 } else { to.offset };
+        self.at = (to.offset - self.base) as usize;
+    }
+
+    /// Puts a held text aside: calls go to and fro between texts.
+    fn park(&mut self) {
+        if !self.is_held {
+            return;
+        }
+        if self.parked.len() >= PARKED_TEXTS_MAX {
+            self.parked.remove(0);
+        }
+        let buffer = std::mem::take(&mut self.buffer);
+        self.parked.push(Parked {
+            source: self.source,
+            buffer,
+            filled: self.filled,
+            is_last: self.is_last,
+        });
     }
 
     /// The bytes of the line last read.

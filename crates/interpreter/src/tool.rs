@@ -27,7 +27,7 @@ impl Core {
             return Err(self.alarm("tool-number-illegal", word));
         }
         if self.control.policies.short_tool_word == ShortToolWord::Refused
-            && matches!(word.value, Value::Number(_))
+            && matches!(word.value, Value::Number(number) if !number.is_computed())
             && self.digits_written(word) < 2 * settings.number_digits
         {
             return Err(self.alarm("tool-number-illegal", word));
@@ -58,7 +58,7 @@ impl Core {
 
     /// Digits of a word as it stands in the text.
     fn digits_written(&self, word: &Word) -> u32 {
-        let bytes = self.text.bytes(&self.line).get(word.start as usize..word.end as usize);
+        let bytes = self.line_bytes().get(word.start as usize..word.end as usize);
         bytes.unwrap_or_default().iter().filter(|byte| byte.is_ascii_digit()).count() as u32
     }
 }

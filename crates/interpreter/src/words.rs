@@ -225,6 +225,7 @@ impl Core {
         }
         let feed = self.feed(word, number, per_revolution)?;
         self.modal.feed = Some(feed);
+        self.modal.feed_is_lead = function.takes_lead;
         if function.takes_lead {
             self.check_lead(word);
         } else {

@@ -62,6 +62,8 @@ pub enum FaultKind {
     TextAfterSemicolon,
     /// A full-width character that stands for an ASCII one.
     FullWidth,
+    /// A program name in angle brackets, which only some controls know.
+    ProgramName,
 }
 
 impl FaultKind {

@@ -485,6 +485,7 @@ impl Scanner<'_> {
             }
         }
         self.extent(ExtentKind::Name, start, self.at);
+        self.fault(FaultKind::ProgramName, start, self.at);
     }
 
     fn end_of_text(&mut self) {

@@ -13,7 +13,7 @@ use turnwright_export::formats::jsonl;
 use turnwright_export::formats::svg::{PictureOptions, write_svg};
 
 use super::plot::paint;
-use super::trace::{BUFFER_BYTES, write_alarm};
+use super::trace::{BUFFER_BYTES, write_alarm, write_json};
 use crate::arguments::{Colour, Format, Run};
 use crate::environment::ProgramText;
 use crate::execution::Execution;
@@ -53,7 +53,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     while let Some(command) = execution.next_command() {
         measure.add(&command);
         if let Some(folder) = &mut folder {
-            jsonl::write_command(&mut folder.buffer, &command, decimals);
+            write_json(&mut folder.buffer, &command, decimals, &execution);
             folder.pour(BUFFER_BYTES)?;
         }
         progress.look(&execution);

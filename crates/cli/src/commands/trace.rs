@@ -34,7 +34,7 @@ pub(crate) fn run(options: &Trace, printer: &Printer) -> Result<Status, Fault> {
     }
     while let Some(command) = execution.next_command() {
         match format {
-            TraceFormat::Jsonl => jsonl::write_command(&mut buffer, &command, decimals),
+            TraceFormat::Jsonl => write_json(&mut buffer, &command, decimals, &execution),
             TraceFormat::Text => write_line(&mut buffer, &command, decimals),
             TraceFormat::Human => {
                 let _ = write!(buffer, "{:>6}  ", command.origin.line);
@@ -61,6 +61,15 @@ pub(crate) fn run(options: &Trace, printer: &Printer) -> Result<Status, Fault> {
     Ok(findings.iter().map(|finding| finding.status()).max().unwrap_or(Status::Clean))
 }
 
+/// One command as JSON, with its file when that is another than the program's.
+#[inline]
+pub(crate) fn write_json(buffer: &mut Vec<u8>, command: &Command, decimals: u8, execution: &Execution<'_>) {
+    match execution.other_file(command.origin.source) {
+        None => jsonl::write_command(buffer, command, decimals),
+        Some(file) => jsonl::write_command_of_file(buffer, command, decimals, file),
+    }
+}
+
 fn write_line(buffer: &mut Vec<u8>, command: &Command, decimals: u8) {
     write_listing(buffer, command, decimals);
     buffer.push(b'\n');
@@ -80,6 +89,7 @@ pub(crate) fn write_alarm(buffer: &mut Vec<u8>, execution: &Execution<'_>, print
         sequence: finding.spot(Some(execution.text())).and_then(|spot| sequence_number(&spot.text)),
         program: execution.program(),
         depth: u8::try_from(trace.len()).unwrap_or(u8::MAX),
+        file: finding.diagnostic.place.and_then(|place| execution.other_file(place.source.0)),
     };
     jsonl::write_alarm(buffer, &alarm);
 }

@@ -7,7 +7,8 @@
 //! in a plane with `y` or `v` name it: `face` (X and the side axis), `flank` or `wall` (Z and the side axis, seen
 //! from either side), with the centre as `cx` or `cz`, and `cs`. `coupling` is another rotation in step with the
 //! spindle; 0 to 0 ends it. Fields stand in a fixed order and
-//! numbers carry no trailing zeros, so that equal runs give equal bytes. Writing a command allocates nothing
+//! numbers carry no trailing zeros, so that equal runs give equal bytes. A line of another file than the program's
+//! own (a subprogram of the same folder) ends with `file`, the name of that file. Writing a command allocates nothing
 //! but room in the buffer.
 
 use turnwright_canon::{
@@ -45,6 +46,8 @@ pub struct TraceAlarm<'a> {
     pub program: Option<u32>,
     /// Call depth, 0 in the main program.
     pub depth: u8,
+    /// The file of the line, when it is not that of the program.
+    pub file: Option<&'a str>,
 }
 
 /// Writes the first line.
@@ -147,6 +150,24 @@ pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
     write_origin(out, &command.origin);
 }
 
+/// As [`write_command`], for a line of another file than that of the program: the object ends with `file`.
+#[cold]
+pub fn write_command_of_file(out: &mut Vec<u8>, command: &Command, decimals: u8, file: &str) {
+    let before = out.len();
+    write_command(out, command, decimals);
+    if out.len() > before {
+        write_file(out, file);
+    }
+}
+
+/// Adds the file to the object just written.
+fn write_file(out: &mut Vec<u8>, file: &str) {
+    out.truncate(out.len() - b"}\n".len());
+    out.extend_from_slice(br#","file":"#);
+    write_json_string(out, file);
+    out.extend_from_slice(b"}\n");
+}
+
 /// Writes the alarm that ended the run: the last line.
 pub fn write_alarm(out: &mut Vec<u8>, alarm: &TraceAlarm<'_>) {
     out.extend_from_slice(br#"{"op":"alarm","id":"#);
@@ -162,6 +183,9 @@ pub fn write_alarm(out: &mut Vec<u8>, alarm: &TraceAlarm<'_>) {
         ..Origin::line(alarm.line)
     };
     write_origin(out, &origin);
+    if let Some(file) = alarm.file {
+        write_file(out, file);
+    }
 }
 
 fn write_feed(
@@ -609,12 +633,26 @@ mod tests {
             sequence: Some(20),
             program: Some(1),
             depth: 0,
+            file: None,
         };
         write_alarm(&mut out, &alarm);
         assert_eq!(
             String::from_utf8_lossy(&out),
             "{\"op\":\"alarm\",\"id\":\"062\",\"key\":\"cut-depth-illegal\",\"message\":\"ILLEGAL \\\"U\\\"\",\
              \"line\":4,\"n\":20,\"o\":1,\"depth\":0}\n"
+        );
+    }
+
+    #[test]
+    fn a_line_of_another_file_names_it_last() {
+        let mut out = Vec::new();
+        let command = Command { action: Action::Stop, origin: Origin::line(3) };
+        write_command_of_file(&mut out, &command, 3, "O2.nc");
+        let nowhere = Action::Relocate { to: at(0, 0), others: None };
+        write_command_of_file(&mut out, &Command { action: nowhere, origin: Origin::line(4) }, 3, "O2.nc");
+        assert_eq!(
+            String::from_utf8_lossy(&out),
+            "{\"op\":\"stop\",\"line\":3,\"depth\":0,\"file\":\"O2.nc\"}\n"
         );
     }
 

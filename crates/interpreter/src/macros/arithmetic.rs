@@ -29,6 +29,8 @@ pub(crate) enum CodeFault {
     BareArgument,
     /// The number of a loop is not 1, 2 or 3.
     LoopNumber,
+    /// Conditions are joined on a control that compares two values only.
+    JoinedConditions,
 }
 
 /// How this control computes.
@@ -47,6 +49,7 @@ pub(crate) struct Rules {
     pub(crate) has_newer_functions: bool,
     pub(crate) has_random: bool,
     pub(crate) takes_bare_arguments: bool,
+    pub(crate) joins_conditions: bool,
     pub(crate) bracket_depth_max: u8,
 }
 

@@ -324,6 +324,11 @@ impl Compiler<'_> {
         }
     }
 
+    /// Whether a node is a comparison.
+    fn compares(&self, index: usize) -> bool {
+        matches!(self.expression.node(index), Some((Node::Binary(BinaryOperator::Compare(_), ..), _)))
+    }
+
     /// `depth`: intermediate results held when the node is reached.
     fn node(&self, machine: &mut Machine, index: usize, depth: usize) -> Compiled {
         let Some((node, place)) = self.expression.node(index) else { return Ok(()) };
@@ -405,6 +410,9 @@ impl Compiler<'_> {
         use BinaryOperator as B;
         if operator == B::Modulo && !machine.arithmetic.rules.has_newer_functions {
             return Err((CodeFault::NoFunction, place.clone()));
+        }
+        if !machine.arithmetic.rules.joins_conditions && (self.compares(left) || self.compares(right)) {
+            return Err((CodeFault::JoinedConditions, place.clone()));
         }
         let (slots, constants) =
             ((self.slot(left), self.slot(right)), (self.constant(left), self.constant(right)));

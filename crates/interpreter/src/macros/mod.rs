@@ -20,7 +20,9 @@ pub(crate) use calls::{CallKind, CodeCalls, ModalCall, Program};
 pub(crate) use code::Code;
 use code::{Machine, Outcome};
 pub(crate) use statement::Statement;
-use turnwright_control::policy::{ArcSineRange, BareArgument, MacroFunctions, MacroPrecision, NullVariable};
+use turnwright_control::policy::{
+    ArcSineRange, BareArgument, JoinedConditions, MacroFunctions, MacroPrecision, NullVariable,
+};
 use turnwright_control::{Control, Parameters};
 use turnwright_syntax::{Block, Decimal, Resolved, Value, Word, parse_expression};
 pub(crate) use variables::{Locals, Variables, is_null, number};
@@ -74,6 +76,7 @@ impl Macros {
             },
             has_newer_functions: policies.macro_functions != MacroFunctions::Basic,
             has_random: policies.macro_functions == MacroFunctions::ExtendedWithRandom,
+            joins_conditions: policies.joined_conditions == JoinedConditions::Taken,
             takes_bare_arguments: policies.bare_argument == BareArgument::Taken,
             bracket_depth_max: limits.bracket_depth_max,
         };

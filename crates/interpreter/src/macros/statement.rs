@@ -16,6 +16,7 @@ use super::variables::number;
 use crate::Environment;
 use crate::cache::Way;
 use crate::index::Resume;
+use crate::limits;
 use crate::machine::{Core, Halt};
 use crate::report::Alarm;
 
@@ -256,6 +257,7 @@ impl Core {
                 value as u32
             }
         };
+        self.count_idle(limits::IDLE_LOOK_UPS)?;
         let here = self.block_start();
         let Some((to, _)) = self.find_sequence(wanted, here, environment)? else {
             return Err(self.label_alarm("jump-target-not-found", format!("N{wanted}")).into());
@@ -370,6 +372,7 @@ impl Core {
             CodeFault::Arguments => "function-argument-format",
             CodeFault::BareArgument => "opening-bracket-missing",
             CodeFault::LoopNumber => "loop-number-illegal",
+            CodeFault::JoinedConditions => "expression-format",
         };
         let quote = self.quote(place.start, place.end);
         self.finish(Diagnostic::alarm(key).at(self.at.span(place.start, place.end)).with("word", quote))

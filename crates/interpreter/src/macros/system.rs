@@ -16,6 +16,7 @@ use turnwright_diagnostics::Diagnostic;
 
 use super::variables::{NULL, number};
 use crate::Environment;
+use crate::limits;
 use crate::machine::{Core, Halt, SyncReason};
 use crate::offsets::{OffsetField, OffsetTable};
 use crate::report::Alarm;
@@ -59,6 +60,7 @@ impl Core {
         if variable == 0.0 {
             return Ok(NULL);
         }
+        self.count_idle(limits::IDLE_LOOK_UPS)?;
         let number_of = whole_number(variable);
         if let Some(inner) = number_of.and_then(|number| self.indirect(number)) {
             let held = number(self.read_variable(inner, environment)?);
@@ -279,6 +281,7 @@ impl Core {
             self.macros.variables.set(slot, value);
             return Ok(());
         }
+        self.count_idle(limits::IDLE_LOOK_UPS)?;
         let Some(variable) = whole_number(variable) else {
             return Err(alarm(self, "variable-number-illegal"));
         };
