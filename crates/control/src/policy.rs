@@ -126,6 +126,13 @@ policies! {
         /// Refused.
         Alarm,
     }
+    /// Coordinate setting beside the code of a work coordinate system in one block.
+    setting_beside_system: SettingBesideSystem {
+        /// The system is selected, then its coordinates are set.
+        Both,
+        /// The coordinates are set and the code of the system is passed over.
+        SettingOnly,
+    }
     /// The absolute and the incremental word of one axis in one block.
     axis_word_conflict: AxisWordConflict {
         /// The one that stands later counts.

@@ -52,6 +52,8 @@ pub(crate) struct Axes {
     /// Program zero in machine coordinates: what coordinate settings have added up to.
     pub(crate) preset: Places,
     pub(crate) interpolation: Interpolation,
+    /// Movement of the tool offset in Y that is still to be made.
+    pub(crate) untaken_y: Length,
     /// Place on the virtual axis.
     pub(crate) v: Length,
     /// On the cylinder, words of the rotary axis are lengths.
@@ -104,6 +106,7 @@ impl Axes {
             at,
             preset: Places::default(),
             interpolation: Interpolation::Normal,
+            untaken_y: Length::ZERO,
             v: Length::ZERO,
             unrolled_words: false,
             polar_words: false,
@@ -130,10 +133,20 @@ impl Axes {
         };
     }
 
-    /// The reference points, in the coordinates of the program.
-    fn home(&self) -> Places {
-        let start = Self::new(self.machine.clone(), false, true).at;
-        Places { c: start.c - self.preset.c, y: start.y - self.preset.y, b: start.b - self.preset.b }
+    /// A reference point, 0 to 3, in the coordinates of the program: the first is the machine's, the others are
+    /// machine zero, as the parameters of X and Z have them too until somebody sets them.
+    fn reference(&self, number: usize) -> Places {
+        let there = match number {
+            0 => Self::new(self.machine.clone(), false, true).at,
+            _ => Places::default(),
+        };
+        Places { c: there.c - self.preset.c, y: there.y - self.preset.y, b: there.b - self.preset.b }
+    }
+
+    /// Where they stand in machine coordinates.
+    pub(crate) fn in_machine(&self) -> Places {
+        let (at, zero) = (self.at, self.preset);
+        Places { c: at.c + zero.c, y: at.y + zero.y, b: at.b + zero.b }
     }
 
     /// An M code was given out: it may make the spindle an axis, or a spindle again.
@@ -200,7 +213,8 @@ impl Core {
         if present & ACROSS != 0 {
             let (word, is_increment) = self.axis_word(block, b'Y', b'V')?;
             let length = self.length(word)?;
-            ends.y = Some(if is_increment { self.axes.at.y + length } else { length });
+            let from = self.axes.at.y + std::mem::take(&mut self.axes.untaken_y);
+            ends.y = Some(if is_increment { from + length } else { length });
             self.missing_point(word);
         }
         if let Some(word) = block.word(b'B').filter(|_| present & SWIVEL != 0) {
@@ -424,29 +438,93 @@ impl Core {
         Some(Box::new(ends))
     }
 
-    /// The two legs of a return to the reference point: the other axes that the block names at the intermediate
-    /// point, and at home.
-    #[expect(clippy::type_complexity, reason = "two legs, each with or without such axes")]
-    pub(crate) fn other_axes_home(
-        &mut self,
-        block: &Block,
-    ) -> Result<(Option<Box<OtherAxes>>, Option<Box<OtherAxes>>), Alarm> {
+    /// Where a block that acts once sends the axes beyond X and Z.
+    pub(crate) fn other_ends(&mut self, block: &Block) -> Result<OtherAxes, Alarm> {
         if block.present() & self.axes.letters == 0 {
-            return Ok((None, None));
+            return Ok(OtherAxes::default());
         }
         self.refuse_words_of_corners(block)?;
-        let to = self.modal.position;
-        let by_way_of = self.other_targets(block)?;
-        let places = self.axes.home();
-        let home = OtherAxes {
-            c: by_way_of.c.map(|_| places.c),
-            y: by_way_of.y.map(|_| places.y),
-            b: by_way_of.b.map(|_| places.b),
+        self.other_targets(block)
+    }
+
+    /// The same for words that are machine coordinates; increments do not count and are named.
+    pub(crate) fn other_ends_of_machine(&mut self, block: &Block) -> Result<OtherAxes, Alarm> {
+        let mut ends = OtherAxes::default();
+        if block.present() & self.axes.letters == 0 {
+            return Ok(ends);
+        }
+        self.refuse_words_of_corners(block)?;
+        let are_increments = self.modal.is_incremental;
+        let letters = self.axes.letters;
+        for word in block.words.iter().filter(|word| letters & Block::bit(word.address) != 0) {
+            let preset = self.axes.preset;
+            match word.address {
+                b'C' if self.axes.is_spindle => return Err(self.alarm("axis-is-spindle", word)),
+                b'C' | b'Y' | b'B' if are_increments => self.warn("machine-move-increment-ignored", word),
+                b'C' => ends.c = Some(self.angle(word)? - preset.c),
+                b'B' => ends.b = Some(self.angle(word)? - preset.b),
+                b'Y' => {
+                    ends.y = Some(self.length(word)? - preset.y);
+                    self.missing_point(word);
+                }
+                _ => self.warn("machine-move-increment-ignored", word),
+            }
+        }
+        Ok(ends)
+    }
+
+    /// A reference point, 0 to 3, of those axes beyond X and Z that go somewhere.
+    pub(crate) fn other_reference(&self, number: usize, ends: &OtherAxes) -> OtherAxes {
+        let places = self.axes.reference(number);
+        OtherAxes {
+            c: ends.c.map(|_| places.c),
+            y: ends.y.map(|_| places.y),
+            b: ends.b.map(|_| places.b),
             ..OtherAxes::default()
+        }
+    }
+
+    /// The first word of a block whose axis does not stand at its first reference point. A rotary axis stands there
+    /// again after every full turn.
+    pub(crate) fn other_axis_not_at_home<'b>(&self, block: &'b Block) -> Option<&'b Word> {
+        let (home, at, machine) = (self.axes.reference(0), self.axes.at, &self.axes.machine);
+        let turns = |from: Angle, to: Angle, turn_deg: f64| {
+            let turn = ((turn_deg * 1e9).round() as i64).max(1);
+            (to - from).nanodegrees() % turn == 0
         };
-        let first = self.take_along(to, &Shape::Line, by_way_of);
-        let second = self.take_along(to, &Shape::Line, home);
-        Ok((first, second))
+        block.words.iter().find(|word| match word.address {
+            b'C' | b'H' => {
+                machine.c.as_ref().is_some_and(|axis| !turns(home.c, at.c, axis.turn_deg))
+            }
+            b'Y' | b'V' => machine.y.is_some() && at.y != home.y,
+            b'B' => machine.b.is_some() && !turns(home.b, at.b, 360.0),
+            _ => false,
+        })
+    }
+
+    /// The offset of the tool in Y, as a shift or as a movement, has changed by this much.
+    pub(crate) fn offset_y(&mut self, shift: Length, movement: Length) {
+        let way = shift + movement;
+        if self.axes.machine.y.is_none() || (way.is_zero() && movement.is_zero()) {
+            return;
+        }
+        self.axes.preset.y = self.axes.preset.y + way;
+        self.axes.at.y = self.axes.at.y - way;
+        self.axes.untaken_y = self.axes.untaken_y + movement;
+        if !way.is_zero() {
+            let others = OtherAxes { y: Some(self.axes.at.y), ..OtherAxes::default() };
+            self.emit(Action::Relocate { to: self.tip, others: Some(Box::new(others)) });
+        }
+    }
+
+    /// The movement of the offset in Y that is still to be made, as the axes of a move.
+    pub(crate) fn take_movement_y(&mut self) -> Option<Box<OtherAxes>> {
+        let way = std::mem::take(&mut self.axes.untaken_y);
+        if way.is_zero() {
+            return None;
+        }
+        let ends = OtherAxes { y: Some(self.axes.at.y + way), ..OtherAxes::default() };
+        self.take_along(self.modal.position, &Shape::Line, ends)
     }
 
     /// Gives the places where the other axes stand new coordinates.

@@ -4,7 +4,7 @@
 //! the auxiliary functions that wait for the end of the move. Source: execution order inside a block, both
 //! families.
 
-use turnwright_control::policy::{OneShotWithMotion, ProgramZero};
+use turnwright_control::policy::{OneShotWithMotion, ProgramZero, SettingBesideSystem};
 use turnwright_diagnostics::Diagnostic;
 use turnwright_syntax::{Block, Word};
 
@@ -40,6 +40,9 @@ const AXES: u32 = Block::bit(b'X') | Block::bit(b'Z') | Block::bit(b'U') | Block
 
 /// The common variable that holds the T code for the program that it calls.
 const TOOL_VARIABLE: f64 = 149.0;
+
+/// The modal group of the work coordinate systems.
+const WORK_SYSTEMS: u8 = 14;
 
 /// Most G words in a block.
 const CODES_MAX: usize = 16;
@@ -136,6 +139,9 @@ impl Core {
         if self.macros.calls.any_tool.is_some() {
             self.call_by_tool(block, &mut auxiliary)?;
         }
+        if codes.one_shot.is_some() && codes.mode_count > 0 {
+            self.drop_work_system(block, &mut codes);
+        }
         for (id, word) in codes.modes.iter().take(codes.mode_count) {
             self.run_mode(*id, &block.words[usize::from(*word)], block, environment)?;
         }
@@ -184,7 +190,7 @@ impl Core {
                 }
             }
         }
-        if self.untaken.is_some() && block.present() & Block::bit(b'T') != 0 {
+        if block.present() & Block::bit(b'T') != 0 && self.owes_movement() {
             self.end_of_tool_block(block.word(b'T'))?;
         }
         if self.corner.is_some() {
@@ -249,6 +255,10 @@ impl Core {
                 if codes.mode_count == CODES_MAX {
                     return Err(self.alarm("too-many-words", word));
                 }
+                let disputed = codes.mode_letters & function.letters & block.present();
+                if disputed != 0 {
+                    return Err(self.disputed_letter(block, disputed));
+                }
                 codes.modes[codes.mode_count] = (id, place as u8);
                 codes.mode_count += 1;
                 codes.mode_letters |= function.letters;
@@ -265,6 +275,29 @@ impl Core {
             }
         }
         Ok(None)
+    }
+
+    /// A letter that two codes of the block would take as theirs.
+    #[cold]
+    fn disputed_letter(&self, block: &Block, letters: u32) -> Alarm {
+        let word = block.words.iter().find(|word| !word.comma && letters & Block::bit(word.address) != 0);
+        self.alarm_at("word-of-two-codes", word)
+    }
+
+    /// A coordinate setting and a work system in one block: on some controls the work system does not count.
+    #[cold]
+    fn drop_work_system(&mut self, block: &Block, codes: &mut Codes) {
+        let is_setting = codes.one_shot.is_some_and(|one_shot| one_shot.id.get().takes_speed_limit);
+        let places = block.present() & (AXES | self.axes.letters) != 0;
+        if !is_setting || !places || self.control.policies.setting_beside_system == SettingBesideSystem::Both {
+            return;
+        }
+        let modes = &codes.modes[..codes.mode_count];
+        let is_system = |(id, _): &(FunctionId, u8)| self.dispatch.group(*id) == WORK_SYSTEMS;
+        let Some(at) = modes.iter().position(is_system) else { return };
+        self.warn("work-system-ignored", &block.words[usize::from(codes.modes[at].1)]);
+        codes.modes.copy_within(at + 1..codes.mode_count, at);
+        codes.mode_count -= 1;
     }
 
     /// A block whose G code calls a macro.

@@ -8,7 +8,7 @@ use turnwright_control::policy::{
     NestedComment, ProgramNames, RepeatedAddress, RepeatedSpeedWord, UnnumberedProgram,
 };
 use turnwright_diagnostics::{Diagnostic, Severity};
-use turnwright_syntax::{Block, ExtentKind, Fault, FaultKind, Word};
+use turnwright_syntax::{Block, ExtentKind, Fault, FaultKind, Value, Word};
 
 use crate::machine::Core;
 use crate::report::Alarm;
@@ -20,6 +20,11 @@ impl Core {
             if fault.kind == FaultKind::ProgramName {
                 self.check_program_name(block, fault)?;
                 continue;
+            }
+            if let Some(word) = self.numbered_word(block, fault) {
+                let quote = self.quote(word.start, fault.end);
+                let place = self.at.span(word.start, fault.end);
+                return Err(self.finish(Diagnostic::alarm("numbered-word").at(place).with("word", quote)));
             }
             let (key, severity) = self.fault_key(fault);
             if severity == Severity::Alarm {
@@ -54,6 +59,14 @@ impl Core {
             (false, true) => Err(self.fault_alarm("program-number-illegal", fault)),
             (false, false) => Err(self.fault_alarm("illegal-address", fault)),
         }
+    }
+
+    /// The word before a sign of equality: `S2=1000` is written where a control has several spindles.
+    fn numbered_word<'b>(&self, block: &'b Block, fault: &Fault) -> Option<&'b Word> {
+        let is_equals = self.text.bytes(&self.line).get(fault.start as usize) == Some(&b'=');
+        let word = block.words.iter().rfind(|word| word.end <= fault.start)?;
+        let has_number = matches!(word.value, Value::Number(number) if number.scale == 0);
+        (fault.kind == FaultKind::NotAWord && is_equals && word.end == fault.start && has_number).then_some(word)
     }
 
     /// The diagnostic of a fault that the reader found.

@@ -2,7 +2,7 @@
 
 use std::collections::{HashSet, VecDeque};
 
-use turnwright_canon::{Command, CycleOrigin, PathMode};
+use turnwright_canon::{Command, CycleOrigin, OtherAxes, PathMode};
 use turnwright_control::{Control, Setup, SetupFault};
 use turnwright_cycles::Element;
 use turnwright_diagnostics::{Diagnostic, SourceId};
@@ -11,7 +11,7 @@ use turnwright_units::{Angle, Displacement, Length, Position, Radius, SurfaceSpe
 
 use crate::Environment;
 use crate::auxiliary::Waiting;
-use crate::axes::Axes;
+use crate::axes::{Axes, Places};
 use crate::cache::Cache;
 use crate::corner::OpenPath;
 use crate::data_list::{DataList, ToolLife};
@@ -122,6 +122,8 @@ pub(crate) struct Core {
     pub(crate) transform: Transform,
     /// Where the last skip move ended.
     pub(crate) skip_place: Position<WorkTip>,
+    /// The same of the axes beyond X and Z.
+    pub(crate) skip_places: Places,
     /// Moves are transformed, checked against strokes, or refused: see [`Core::look_at_moves`].
     pub(crate) looks_at_moves: bool,
     /// Rapid rates of X and Z.
@@ -276,10 +278,15 @@ impl Interpreter {
             options,
             zeros,
             axes,
-            homing: Homing { is_made: setup.start.homed, by_way_of: None },
+            homing: Homing {
+                is_made: setup.start.homed,
+                by_way_of: None,
+                others_by_way_of: OtherAxes::default(),
+            },
             strokes,
             transform: Transform::default(),
             skip_place: modal.position,
+            skip_places: Places::default(),
             looks_at_moves: false,
             rapid_rates_mm_per_min: [machine.rapid_x_mm_per_min, machine.rapid_z_mm_per_min],
             offsets,

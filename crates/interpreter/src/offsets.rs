@@ -162,6 +162,9 @@ pub(crate) struct OffsetInForce {
     pub(crate) shift: Displacement<MachineTurret>,
     /// The tool moves by this.
     pub(crate) movement: Displacement<MachineTurret>,
+    /// The same two in Y.
+    pub(crate) shift_y: Length,
+    pub(crate) movement_y: Length,
     /// Geometry and wear together.
     pub(crate) nose_radius: Length,
     /// Direction of the imaginary tip, 0 to 9.
@@ -173,6 +176,8 @@ impl OffsetInForce {
     pub(crate) const NONE: Self = Self {
         shift: Displacement::new(Radius::ZERO, Length::ZERO),
         movement: Displacement::new(Radius::ZERO, Length::ZERO),
+        shift_y: Length::ZERO,
+        movement_y: Length::ZERO,
         nose_radius: Length::ZERO,
         tip: 0,
     };
@@ -384,9 +389,19 @@ impl Core {
             tip: geometry_row.tip,
             ..OffsetInForce::NONE
         };
-        for (part, moves) in [(geometry, geometry_moves), (wear, wear_moves)] {
-            let sum = if moves { &mut offset.movement } else { &mut offset.shift };
+        let y = |row: &Cells| row.0[OffsetField::Y as usize];
+        let parts = [
+            (geometry, y(&geometry_row.geometry), geometry_moves),
+            (wear, y(&wear_row.wear), wear_moves),
+        ];
+        for (part, part_y, moves) in parts {
+            let (sum, sum_y) = if moves {
+                (&mut offset.movement, &mut offset.movement_y)
+            } else {
+                (&mut offset.shift, &mut offset.shift_y)
+            };
             *sum = Displacement::new(sum.x + part.x, sum.z + part.z);
+            *sum_y = *sum_y + part_y;
         }
         if settings.zero_row_shifts {
             let work = self.offset_radius(OffsetTable::Geometry, self.offsets.row(0).geometry);
@@ -460,7 +475,8 @@ impl Core {
     /// feed while cutting.
     #[cold]
     pub(crate) fn make_movement(&mut self, word: Option<&Word>) -> Result<(), Alarm> {
-        if self.untaken.take().is_none() {
+        let others = self.take_movement_y();
+        if self.untaken.take().is_none() && others.is_none() {
             return Ok(());
         }
         let motion = self.modal.motion.get();
@@ -468,11 +484,16 @@ impl Core {
         let is_cut = self.modal.motion != FunctionId::RAPID && !motion.repeats && !motion.takes_lead;
         let action = if is_cut {
             let Some(feed) = self.feed_in_force() else { return Err(self.alarm_at("feed-missing", word)) };
-            Action::Feed { to, shape: Shape::Line, feed, others: None }
+            Action::Feed { to, shape: Shape::Line, feed, others }
         } else {
-            Action::Rapid { to, path: self.rapid_path(), others: None }
+            Action::Rapid { to, path: self.rapid_path(), others }
         };
         self.emit_move(to, action)
+    }
+
+    /// Whether a movement is still to be made.
+    pub(crate) fn owes_movement(&self) -> bool {
+        self.untaken.is_some() || !self.axes.untaken_y.is_zero()
     }
 
     /// At the end of a block with a T word: a movement that does not wait for an axis is made now.
@@ -501,6 +522,7 @@ impl Core {
         } else {
             self.untaken = None;
             self.modal.position = self.tip;
+            self.axes.untaken_y = Length::ZERO;
         }
     }
 

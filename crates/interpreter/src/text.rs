@@ -136,12 +136,7 @@ impl Text {
             self.parked.remove(0);
         }
         let buffer = std::mem::take(&mut self.buffer);
-        self.parked.push(Parked {
-            source: self.source,
-            buffer,
-            filled: self.filled,
-            is_last: self.is_last,
-        });
+        self.parked.push(Parked { source: self.source, buffer, filled: self.filled, is_last: self.is_last });
     }
 
     /// The bytes of the line last read.

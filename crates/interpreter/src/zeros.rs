@@ -330,7 +330,10 @@ impl Core {
         let (before, tip_before) = (self.zero(), self.tip_zero());
         let (place, tip) = (self.modal.position, self.tip);
         let (place_in_work, tip_in_work) = (self.in_work(place), self.in_work(tip));
+        let offset_before = self.modal.offset_in_force;
         change(self);
+        let offset = self.modal.offset_in_force;
+        self.offset_y(offset.shift_y - offset_before.shift_y, offset.movement_y - offset_before.movement_y);
         let (after, tip_after) = (self.zero(), self.tip_zero());
         let moved = |place: Position<WorkTip>, before: Displacement<_>, after: Displacement<_>| {
             Position::new(place.x + before.x - after.x, place.z + before.z - after.z)

@@ -10,6 +10,9 @@
 //! point; its increments count from the intermediate point. `G27 X(U)_ Z(W)_` goes to the point at rapid and stops
 //! with an alarm when a named axis is not at its first reference point there.
 //!
+//! Axes beyond X and Z that the block names go with them. Of these the machine file gives the first reference point;
+//! the further ones are their machine zero.
+//!
 //! The reference points are machine coordinates (1240 to 1243), so no shift and no offset changes where they lie.
 //! By parameter the return cancels the local shift (1201#2) and the preset (1201#3) of the axis, and the 980
 //! series lets go of the tool offset. Before the first return the others refuse to move; the setup says whether
@@ -17,7 +20,7 @@
 //!
 //! Source: automatic return to the reference points, both families.
 
-use turnwright_canon::{Action, RapidPath};
+use turnwright_canon::{Action, OtherAxes, RapidPath, Shape};
 use turnwright_diagnostics::{Diagnostic, Severity};
 use turnwright_syntax::{Block, Word};
 use turnwright_units::{Displacement, Position, WorkTip};
@@ -30,9 +33,11 @@ use crate::report::Alarm;
 pub(super) static REFERENCE_RETURN: Function =
     Function::one_shot("reference-return", reference_return).with_other_axes();
 pub(super) static SECOND_REFERENCE_RETURN: Function =
-    Function::one_shot("second-reference-return", second_reference_return).with_letters(b"P");
-pub(super) static REFERENCE_LEAVE: Function = Function::one_shot("reference-leave", reference_leave);
-pub(super) static REFERENCE_CHECK: Function = Function::one_shot("reference-check", reference_check);
+    Function::one_shot("second-reference-return", second_reference_return).with_letters(b"P").with_other_axes();
+pub(super) static REFERENCE_LEAVE: Function =
+    Function::one_shot("reference-leave", reference_leave).with_other_axes();
+pub(super) static REFERENCE_CHECK: Function =
+    Function::one_shot("reference-check", reference_check).with_other_axes();
 
 const CROSS: u32 = letters(b"XU");
 const ALONG: u32 = letters(b"ZW");
@@ -44,6 +49,8 @@ pub(crate) struct Homing {
     pub(crate) is_made: bool,
     /// The intermediate point of the last return.
     pub(crate) by_way_of: Option<Position<WorkTip>>,
+    /// The same of the axes beyond X and Z.
+    pub(crate) others_by_way_of: OtherAxes,
 }
 
 fn reference_return(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
@@ -74,7 +81,7 @@ fn second_reference_return(core: &mut Core, call: &mut Call<'_>) -> Result<(), A
 fn reference_leave(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     core.refuse_in_hole_cycle(call.word)?;
     let present = call.block.present();
-    if present & super::AXES == 0 {
+    if present & (super::AXES | core.axes.letters) == 0 {
         return Ok(());
     }
     let Some(by_way_of) = core.homing.by_way_of else {
@@ -84,25 +91,37 @@ fn reference_leave(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     let by_way_of = named(present, by_way_of, from);
     core.modal.position = by_way_of;
     let to = core.target(call.block)?;
-    core.rapid_each_axis(by_way_of)?;
-    core.rapid_each_axis(to)
+    let ends = core.other_ends(call.block)?;
+    let passed = core.homing.others_by_way_of;
+    let others_by_way_of = OtherAxes {
+        c: ends.c.and(passed.c),
+        y: ends.y.and(passed.y),
+        b: ends.b.and(passed.b),
+        ..OtherAxes::default()
+    };
+    core.rapid_each_axis_with(by_way_of, others_by_way_of)?;
+    core.rapid_each_axis_with(to, ends)
 }
 
 fn reference_check(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     core.refuse_in_hole_cycle(call.word)?;
     core.refuse_without_reference(call.word)?;
     let present = call.block.present();
-    if present & super::AXES == 0 {
+    if present & (super::AXES | core.axes.letters) == 0 {
         return Ok(());
     }
     let to = core.target(call.block)?;
-    core.rapid_each_axis(to)?;
+    let ends = core.other_ends(call.block)?;
+    core.rapid_each_axis_with(to, ends)?;
     let (there, home) = (core.machine_position(), core.zeros.reference[0]);
     for (axis, is_there) in [(CROSS, there.x == home.x), (ALONG, there.z == home.z)] {
         if present & axis != 0 && !is_there {
             let word = call.block.words.iter().find(|word| axis & Block::bit(word.address) != 0);
             return Err(core.alarm_at("not-at-reference", word));
         }
+    }
+    if let Some(word) = core.other_axis_not_at_home(call.block) {
+        return Err(core.alarm("not-at-reference", word));
     }
     core.leave_out_movement(present & letters(b"XU") != 0, present & letters(b"ZW") != 0);
     Ok(())
@@ -133,11 +152,17 @@ impl Core {
         let home = self.to_work(self.zeros.reference[number]);
         let home = named(present, home, by_way_of);
         // Both legs are non-linear whatever the parameter for positioning says.
-        let (others_by_way_of, others_home) = self.other_axes_home(block)?;
-        for (to, others) in [(by_way_of, others_by_way_of), (home, others_home)] {
-            self.modal.position = to;
-            self.emit_move(to, Action::Rapid { to, path: RapidPath::EachAxis, others })?;
-        }
+        let others_by_way_of = self.other_ends(block)?;
+        let others_home = self.other_reference(number, &others_by_way_of);
+        let before = self.homing.others_by_way_of;
+        self.homing.others_by_way_of = OtherAxes {
+            c: others_by_way_of.c.or(before.c),
+            y: others_by_way_of.y.or(before.y),
+            b: others_by_way_of.b.or(before.b),
+            ..OtherAxes::default()
+        };
+        self.rapid_each_axis_with(by_way_of, others_by_way_of)?;
+        self.rapid_each_axis_with(home, others_home)?;
         self.leave_out_movement(present & CROSS != 0, present & ALONG != 0);
         if number == 0 {
             self.clear_shifts_at_home(present);
@@ -177,8 +202,18 @@ impl Core {
 
     /// A rapid move on which each axis goes at its own rate.
     pub(super) fn rapid_each_axis(&mut self, to: Position<WorkTip>) -> Result<(), Alarm> {
+        self.rapid_each_axis_with(to, OtherAxes::default())
+    }
+
+    /// The same with axes beyond X and Z.
+    pub(super) fn rapid_each_axis_with(
+        &mut self,
+        to: Position<WorkTip>,
+        ends: OtherAxes,
+    ) -> Result<(), Alarm> {
         self.modal.position = to;
-        self.emit_move(to, Action::Rapid { to, path: RapidPath::EachAxis, others: None })
+        let others = self.take_along(to, &Shape::Line, ends);
+        self.emit_move(to, Action::Rapid { to, path: RapidPath::EachAxis, others })
     }
 
     /// Moves in machine coordinates need the reference.

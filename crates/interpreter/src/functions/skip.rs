@@ -9,8 +9,8 @@
 //!
 //! Source: skip function and multi-step skip, both families.
 
-use turnwright_canon::{Action, Shape};
-use turnwright_units::{Position, Radius, WorkTip};
+use turnwright_canon::{Action, OtherAxes, Shape};
+use turnwright_units::{Angle, Length, Position, Radius, WorkTip};
 
 use super::Function;
 use crate::block::Call;
@@ -18,7 +18,7 @@ use crate::machine::Core;
 use crate::report::Alarm;
 use crate::{Environment, SignalMove};
 
-pub(super) static SKIP: Function = Function::one_shot("skip", skip).with_letters(b"P");
+pub(super) static SKIP: Function = Function::one_shot("skip", skip).with_letters(b"P").with_other_axes();
 
 fn skip(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     if core.is_compensating() {
@@ -33,19 +33,24 @@ fn skip(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
             _ => return Err(core.alarm("skip-number-illegal", word)),
         },
     };
-    if call.block.present() & super::AXES == 0 {
+    if call.block.present() & (super::AXES | core.axes.letters) == 0 {
         return Ok(());
     }
     let to = core.target(call.block)?;
+    let ends = core.other_ends(call.block)?;
     let Some(feed) = core.feed_in_force() else {
         return Err(core.alarm_at("feed-missing", call.word));
     };
     core.check_spindle();
-    let stop = core.signal_place(call.environment, input, to).unwrap_or(to);
+    let signal = core.signal_part(call.environment, input, to);
+    let stop = signal.map_or(to, |part| core.part_of_way(part, to));
+    let ends = signal.map_or(ends, |part| core.part_of_other_ways(part, ends));
     core.modal.position = stop;
+    let others = core.take_along(stop, &Shape::Line, ends);
     core.skip_place = stop;
+    core.skip_places = core.axes.at;
     core.tell_skip();
-    core.emit_move(stop, Action::Feed { to: stop, shape: Shape::Line, feed, others: None })
+    core.emit_move(stop, Action::Feed { to: stop, shape: Shape::Line, feed, others })
 }
 
 impl Core {
@@ -61,14 +66,47 @@ impl Core {
         input: Option<u8>,
         to: Position<WorkTip>,
     ) -> Option<Position<WorkTip>> {
+        self.signal_part(environment, input, to).map(|part| self.part_of_way(part, to))
+    }
+
+    /// After which part of the way a signal comes.
+    fn signal_part(
+        &self,
+        environment: &mut dyn Environment,
+        input: Option<u8>,
+        to: Position<WorkTip>,
+    ) -> Option<f64> {
         let from = self.tip;
         let wait = SignalMove { line: self.at.line, input, from: self.in_work(from), to: self.in_work(to) };
-        let part = environment.signal(&wait).filter(|part| (0.0..=1.0).contains(part))?;
+        environment.signal(&wait).filter(|part| (0.0..=1.0).contains(part))
+    }
+
+    /// The axes beyond X and Z after a part of their way.
+    fn part_of_other_ways(&self, part: f64, ends: OtherAxes) -> OtherAxes {
+        let at = self.axes.at;
         let along = |from: i64, to: i64| from + ((to - from) as f64 * part).round() as i64;
-        let length = turnwright_units::Length::from_nm;
+        let turned = |from: Angle, to: Angle| {
+            let increment = self.settings.metric_increment.nm() * 1_000;
+            let there = along(from.nanodegrees(), to.nanodegrees());
+            Angle::from_nanodegrees((there + increment / 2).div_euclid(increment) * increment)
+        };
+        let increment = self.modal.increment(&self.settings);
+        OtherAxes {
+            c: ends.c.map(|to| turned(at.c, to)),
+            b: ends.b.map(|to| turned(at.b, to)),
+            y: ends.y.map(|to| Length::from_nm(along(at.y.nm(), to.nm())).rounded(increment)),
+            ..ends
+        }
+    }
+
+    /// A place after a part of the way from the tool to another one, rounded to the least increment.
+    fn part_of_way(&self, part: f64, to: Position<WorkTip>) -> Position<WorkTip> {
+        let from = self.tip;
+        let along = |from: i64, to: i64| from + ((to - from) as f64 * part).round() as i64;
+        let length = Length::from_nm;
         let x = Radius(length(along(from.x.0.nm(), to.x.0.nm())));
         let z = length(along(from.z.nm(), to.z.nm()));
         let increment = self.modal.increment(&self.settings);
-        Some(Position::new(x.to_diameter().rounded(increment).to_radius(), z.rounded(increment)))
+        Position::new(x.to_diameter().rounded(increment).to_radius(), z.rounded(increment))
     }
 }

@@ -16,6 +16,7 @@ use turnwright_diagnostics::Diagnostic;
 
 use super::variables::{NULL, number};
 use crate::Environment;
+use crate::axes::Places;
 use crate::limits;
 use crate::machine::{Core, Halt, SyncReason};
 use crate::offsets::{OffsetField, OffsetTable};
@@ -146,7 +147,7 @@ impl Core {
                 match self.position_axis(variable - 5021) {
                     Axis::X => self.x_value(place.x).to_mm() / self.unit_mm(),
                     Axis::Z => place.z.to_mm() / self.unit_mm(),
-                    other => self.other_place(other),
+                    other => self.other_value(self.axes.in_machine(), other),
                 }
             }
             5041..=5048 => {
@@ -193,7 +194,7 @@ impl Core {
         match axis {
             Axis::X => self.x_value(place.x).to_mm() / self.unit_mm(),
             Axis::Z => place.z.to_mm() / self.unit_mm(),
-            other => self.other_place(other),
+            other => self.other_value(self.skip_places, other),
         }
     }
 
@@ -211,10 +212,14 @@ impl Core {
     }
 
     fn other_place(&self, axis: Axis) -> f64 {
+        self.other_value(self.axes.at, axis)
+    }
+
+    fn other_value(&self, places: Places, axis: Axis) -> f64 {
         match axis {
-            Axis::C => self.axes.at.c.to_degrees(),
-            Axis::Y => self.axes.at.y.to_mm() / self.unit_mm(),
-            Axis::B => self.axes.at.b.to_degrees(),
+            Axis::C => places.c.to_degrees(),
+            Axis::Y => places.y.to_mm() / self.unit_mm(),
+            Axis::B => places.b.to_degrees(),
             Axis::X | Axis::Z | Axis::None => 0.0,
         }
     }
