@@ -42,6 +42,8 @@ struct Texts {
 pub enum Acts {
     /// Only the moving machine shows it.
     Live,
+    /// The machine file says it.
+    MachineFile,
     /// Once nose compensation is executed.
     NoseCompensation,
     /// Once the hole cycles and the further words of the multiple cycles are executed.

@@ -295,6 +295,9 @@ impl Machine {
             let of_all = set("cutting-feed-maximum").unwrap_or(f64::INFINITY);
             self.cutting_max_mm_per_min = feed.min(of_all);
         }
+        if let (Some(turn), Some(axis)) = (set("rotary-turn"), &mut self.axes.c) {
+            axis.turn_deg = turn;
+        }
         if let Some(rpm) = set("spindle-maximum-rpm") {
             self.rpm_max = rpm as u32;
         }

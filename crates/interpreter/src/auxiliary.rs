@@ -12,7 +12,7 @@ use turnwright_control::policy::{AuxiliaryCombination, CallEntry, StoppingCodes}
 use turnwright_syntax::{Block, Word};
 
 use crate::Environment;
-use crate::machine::{BlockPlace, Core};
+use crate::machine::{BlockPlace, Core, SyncReason};
 use crate::report::Alarm;
 use crate::reset::Ending;
 
@@ -331,6 +331,9 @@ impl Auxiliary {
             }
             core.axes.machine_code(*code);
             core.emit(Action::Auxiliary { code: *code });
+            if core.settings.unbuffered.iter().any(|(first, last)| (first..=last).contains(&code)) {
+                core.sync = Some(SyncReason::MovesDone);
+            }
         }
     }
 }

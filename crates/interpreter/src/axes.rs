@@ -493,9 +493,7 @@ impl Core {
             (to - from).nanodegrees() % turn == 0
         };
         block.words.iter().find(|word| match word.address {
-            b'C' | b'H' => {
-                machine.c.as_ref().is_some_and(|axis| !turns(home.c, at.c, axis.turn_deg))
-            }
+            b'C' | b'H' => machine.c.as_ref().is_some_and(|axis| !turns(home.c, at.c, axis.turn_deg)),
             b'Y' | b'V' => machine.y.is_some() && at.y != home.y,
             b'B' => machine.b.is_some() && !turns(home.b, at.b, 360.0),
             _ => false,

@@ -289,7 +289,8 @@ impl Core {
     fn drop_work_system(&mut self, block: &Block, codes: &mut Codes) {
         let is_setting = codes.one_shot.is_some_and(|one_shot| one_shot.id.get().takes_speed_limit);
         let places = block.present() & (AXES | self.axes.letters) != 0;
-        if !is_setting || !places || self.control.policies.setting_beside_system == SettingBesideSystem::Both {
+        if !is_setting || !places || self.control.policies.setting_beside_system == SettingBesideSystem::Both
+        {
             return;
         }
         let modes = &codes.modes[..codes.mode_count];

@@ -66,7 +66,8 @@ impl Core {
         let is_equals = self.text.bytes(&self.line).get(fault.start as usize) == Some(&b'=');
         let word = block.words.iter().rfind(|word| word.end <= fault.start)?;
         let has_number = matches!(word.value, Value::Number(number) if number.scale == 0);
-        (fault.kind == FaultKind::NotAWord && is_equals && word.end == fault.start && has_number).then_some(word)
+        (fault.kind == FaultKind::NotAWord && is_equals && word.end == fault.start && has_number)
+            .then_some(word)
     }
 
     /// The diagnostic of a fault that the reader found.

@@ -15,7 +15,7 @@ use crate::figure::FigureRange;
 pub(crate) use crate::index::Resume;
 use crate::index::{ProgramIndex, ProgramName};
 use crate::machine::{BlockPlace, Core, SyncReason};
-use crate::macros::{Locals, Program};
+use crate::macros::{Locals, Passed, Program};
 use crate::report::Alarm;
 use crate::text::Cursor;
 
@@ -54,7 +54,7 @@ pub(crate) struct MacroFrame {
     pub(crate) start: Resume,
     pub(crate) rounds_left: u32,
     /// The local variables that every round begins with.
-    pub(crate) arguments: Box<Locals>,
+    pub(crate) arguments: Passed,
     /// Those of the caller.
     pub(crate) caller: Box<Locals>,
     /// The modal call that it answers.
@@ -234,7 +234,14 @@ impl Core {
                 self.macros.interrupt = None;
                 Ok(())
             }
-            Flow::Return => self.return_from_call(block, environment),
+            Flow::Return => {
+                if self.settings.gives_return_code
+                    && let Some(code) = word.and_then(|word| self.whole(&word, u32::MAX).ok())
+                {
+                    self.emit(Action::Auxiliary { code });
+                }
+                self.return_from_call(block, environment)
+            }
         }
     }
 
@@ -484,7 +491,7 @@ impl Core {
         };
         if let Some((start, arguments)) = again {
             if let Some(arguments) = arguments {
-                self.macros.variables.set_locals(&arguments);
+                self.macros.variables.set_locals(&arguments.values);
             }
             (self.expects_program_number, self.is_plain) = (true, false);
             return self.jump(start, environment);

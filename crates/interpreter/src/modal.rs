@@ -66,7 +66,7 @@ pub(crate) struct Modal {
     pub(crate) surface: SurfaceSpeed,
     pub(crate) rpm_max: Option<Rpm>,
     pub(crate) spindle: SpindleState,
-    /// Gear of the spindle, 1 to 4.
+    /// Gear of the spindle, 1 to 8.
     pub(crate) gear: u8,
     pub(crate) tool: u32,
     pub(crate) offset: u32,
@@ -134,12 +134,16 @@ pub(crate) struct Settings {
     pub(crate) arc_small_radius_alarm: bool,
     pub(crate) duplicate_word_alarm: bool,
     pub(crate) several_auxiliary: bool,
+    /// M codes behind which the control waits for the moves before it reads on, first and last of each range.
+    pub(crate) unbuffered: Box<[(u32, u32)]>,
+    /// M99 is given out as well.
+    pub(crate) gives_return_code: bool,
     /// Largest number of an M word.
     pub(crate) auxiliary_max: u32,
     /// Of the spindle by parameter, in any mode and gear; `None` without.
     pub(crate) rpm_max: Option<Rpm>,
-    /// Of gears 1 to 4; `None` without.
-    pub(crate) gear_rpm_max: [Option<Rpm>; 4],
+    /// Of gears 1 to 8; `None` without.
+    pub(crate) gear_rpm_max: [Option<Rpm>; 8],
     pub(crate) surface_speed_available: bool,
     /// Number of the axis whose coordinate gives the diameter; 0 and 1 are X.
     pub(crate) surface_speed_axis: u32,
@@ -276,6 +280,8 @@ impl Settings {
             arc_small_radius_alarm: bit("arc-small-radius-alarm"),
             duplicate_word_alarm: bit("duplicate-word-alarm"),
             several_auxiliary: bit("several-auxiliary-codes"),
+            unbuffered: unbuffered(parameters),
+            gives_return_code: bit("return-code-to-machine"),
             auxiliary_max: 10u32.pow(count("auxiliary-digits").clamp(2, 8)) - 1,
             rpm_max: rpm("spindle-maximum-rpm"),
             gear_rpm_max: [
@@ -283,6 +289,10 @@ impl Settings {
                 rpm("gear-2-maximum-rpm"),
                 rpm("gear-3-maximum-rpm"),
                 rpm("gear-4-maximum-rpm"),
+                rpm("gear-5-maximum-rpm"),
+                rpm("gear-6-maximum-rpm"),
+                rpm("gear-7-maximum-rpm"),
+                rpm("gear-8-maximum-rpm"),
             ],
             surface_speed_available: bit("surface-speed-available"),
             surface_speed_axis: count("surface-speed-axis"),
@@ -351,4 +361,14 @@ impl Settings {
             offsets: OffsetSettings::new(parameters),
         }
     }
+}
+
+/// The M codes that stop reading ahead: single ones, then ranges.
+fn unbuffered(parameters: &Parameters) -> Box<[(u32, u32)]> {
+    let code = |name: String| parameters.value(&name) as u32;
+    let single = (1..=10).map(|place| code(format!("unbuffered-m-code-{place}"))).map(|only| (only, only));
+    let ranges = (1..=6).map(|place| {
+        (code(format!("unbuffered-m-first-{place}")), code(format!("unbuffered-m-last-{place}")))
+    });
+    single.chain(ranges).filter(|(first, _)| *first > 0).collect()
 }

@@ -390,10 +390,8 @@ impl Core {
             ..OffsetInForce::NONE
         };
         let y = |row: &Cells| row.0[OffsetField::Y as usize];
-        let parts = [
-            (geometry, y(&geometry_row.geometry), geometry_moves),
-            (wear, y(&wear_row.wear), wear_moves),
-        ];
+        let parts =
+            [(geometry, y(&geometry_row.geometry), geometry_moves), (wear, y(&wear_row.wear), wear_moves)];
         for (part, part_y, moves) in parts {
             let (sum, sum_y) = if moves {
                 (&mut offset.movement, &mut offset.movement_y)

@@ -3,7 +3,7 @@
 //! S counts turns a minute, or with constant surface speed metres (feet) a minute. Three things hold the speed
 //! down: the limit of the coordinate-setting code while the speed follows the diameter, and always the largest
 //! speed of the spindle and of the gear in use, where their parameters give one. A parameter gives the least speed of
-//! constant surface speed as well. The gear is that of the last M41 to M44, as most builders have it; gear 1 before.
+//! constant surface speed as well. The gear is that of the last M41 to M48, as most builders have it; gear 1 before.
 //!
 //! What the assumed machine cannot do is said once; the command keeps the value that the program asks for.
 //!
@@ -21,8 +21,11 @@ use crate::report::Alarm;
 /// No spindle turns faster.
 const RPM_FENCE: u32 = 99_999;
 
-/// M codes that change to gears 1 to 4.
-const GEARS: std::ops::RangeInclusive<u32> = 41..=44;
+/// M codes that change to gears 1 to 8; gears above 4 exist where their parameter gives a speed.
+const GEARS: std::ops::RangeInclusive<u32> = 41..=48;
+
+/// Gears that are always there.
+const USUAL_GEARS: u8 = 4;
 
 /// What the machine can do: only messages ask for it.
 #[derive(Clone, Copy, Debug)]
@@ -70,8 +73,12 @@ impl Core {
 
     /// The gear that an M code changes to.
     pub(crate) fn change_gear(&mut self, code: u32) {
-        if GEARS.contains(&code) && !self.is_capturing() {
-            self.modal.gear = (code - GEARS.start()) as u8 + 1;
+        if !GEARS.contains(&code) || self.is_capturing() {
+            return;
+        }
+        let gear = (code - GEARS.start()) as u8 + 1;
+        if gear <= USUAL_GEARS || self.settings.gear_rpm_max[usize::from(gear - 1)].is_some() {
+            self.modal.gear = gear;
         }
     }
 

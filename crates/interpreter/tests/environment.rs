@@ -182,6 +182,16 @@ fn signals_of_the_machine() {
 }
 
 #[test]
+fn m_codes_by_parameter_stop_reading_ahead() {
+    let text = "O1\nM50\nG0 X1. Z2.\nM51\nX2.\nM62\nX3.\nM64\nM30\n";
+    let conditions = Conditions::on("fanuc-0i-tf").with("3420", "51").with("3421", "60").with("3422", "63");
+    let told = told_with(&mut Machine::with(text), &conditions);
+    let waits: Vec<_> = told.windows(2).filter(|pair| pair[1] == "wait").map(|pair| &pair[0]).collect();
+    assert_eq!(waits, ["auxiliary 51", "auxiliary 62"]);
+    assert_eq!(told.last().map(String::as_str), Some("end"));
+}
+
+#[test]
 fn a_program_waits_for_a_signal_by_looping() {
     let mut machine = Machine::with("O1\nN5 IF[#1002 EQ 0]GOTO 5\nG0 X1. Z2.\nM30\n");
     assert_eq!(told(&mut machine, "fanuc-0i-tf"), ["alarm loop-without-motion line 2 of text 0"]);

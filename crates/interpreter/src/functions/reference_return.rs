@@ -33,7 +33,9 @@ use crate::report::Alarm;
 pub(super) static REFERENCE_RETURN: Function =
     Function::one_shot("reference-return", reference_return).with_other_axes();
 pub(super) static SECOND_REFERENCE_RETURN: Function =
-    Function::one_shot("second-reference-return", second_reference_return).with_letters(b"P").with_other_axes();
+    Function::one_shot("second-reference-return", second_reference_return)
+        .with_letters(b"P")
+        .with_other_axes();
 pub(super) static REFERENCE_LEAVE: Function =
     Function::one_shot("reference-leave", reference_leave).with_other_axes();
 pub(super) static REFERENCE_CHECK: Function =

@@ -13,6 +13,7 @@ use turnwright_control::policy::MacroArgumentNumbers;
 use turnwright_syntax::{Block, Decimal, Value, Word};
 
 use super::variables::{LOCALS, Locals, NULL};
+use crate::flow::FrameKind;
 use crate::machine::Core;
 use crate::modal::FeedMode;
 use crate::report::Alarm;
@@ -23,6 +24,15 @@ const SETS_MAX: usize = 10;
 /// The local variable of each letter, 0 for those that hand over nothing. I, J, K: that of the first set.
 const VARIABLES: [u8; 26] =
     [1, 2, 3, 7, 8, 9, 0, 11, 4, 5, 6, 0, 13, 0, 0, 0, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26];
+
+/// What a call hands to its macro.
+#[derive(Clone, Debug)]
+pub(crate) struct Passed {
+    /// The local variables.
+    pub(crate) values: Box<Locals>,
+    /// The letter of each whose word had no point, else 0.
+    pointless: [u8; LOCALS],
+}
 
 /// Which words of a block are handed over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +50,9 @@ impl Core {
         block: &Block,
         call: Option<&Word>,
         which: Arguments,
-    ) -> Result<Box<Locals>, Alarm> {
+    ) -> Result<Passed, Alarm> {
         let mut locals = Box::new([NULL; LOCALS]);
+        let mut pointless = [0; LOCALS];
         let mut sets = [0usize; 3];
         let only_first_sets = self.control.parameters.bit("arguments-first-sets-only");
         for word in &block.words {
@@ -72,8 +83,47 @@ impl Core {
                 letter => usize::from(VARIABLES[usize::from(letter - b'A')]),
             };
             locals[variable - 1] = self.argument(word)?;
+            let is_pointless =
+                matches!(word.value, Value::Number(number) if !number.has_point && !number.is_computed());
+            pointless[variable - 1] = if is_pointless { word.address } else { 0 };
         }
-        Ok(locals)
+        Ok(Passed { values: locals, pointless })
+    }
+
+    /// `ADP` of a local variable: an argument that was written without a point, with the point behind its last
+    /// digit. By parameter (6007#4) arguments are converted for good, and nothing is changed.
+    #[cold]
+    pub(super) fn with_point(&self, slot: u16) -> f64 {
+        let value = self.macros.variables.get(slot);
+        let place = usize::from(slot);
+        let frame = self.frames.iter().rev().find_map(|frame| match &frame.kind {
+            FrameKind::Macro(frame) => Some(frame),
+            _ => None,
+        });
+        let passed = frame.map(|frame| &frame.arguments).filter(|passed| passed.values[place] == value);
+        let letter = passed.map_or(0, |passed| passed.pointless[place]);
+        let converts = self.control.policies.macro_argument_numbers == MacroArgumentNumbers::Increments
+            && !self.settings.is_calculator
+            && !self.control.parameters.bit("arguments-by-value");
+        if letter == 0 || !converts { value } else { (value * self.increments_per_unit(letter)).round() }
+    }
+
+    /// How many of what a number without a point counts make one.
+    fn increments_per_unit(&self, address: u8) -> f64 {
+        let modal = &self.modal;
+        match address {
+            b'D' | b'H' | b'M' | b'Q' | b'S' | b'T' | b'G' | b'L' | b'P' => 1.0,
+            b'E' | b'F' => match (modal.feed_mode, modal.is_inch) {
+                (FeedMode::PerMinute, false) if self.settings.feed_per_min_fine => 1e3,
+                (FeedMode::PerMinute, false) => 1.0,
+                (FeedMode::PerMinute, true) => 1e2,
+                (FeedMode::PerRevolution, false) if self.settings.feed_per_rev_fine => 1e3,
+                (FeedMode::PerRevolution, false) => 1e2,
+                (FeedMode::PerRevolution, true) => 1e4,
+            },
+            _ if modal.is_inch => (25_400_000 / self.settings.inch_increment.nm()) as f64,
+            _ => (1_000_000 / self.settings.metric_increment.nm()) as f64,
+        }
     }
 
     /// The value that a word hands over.
@@ -91,28 +141,8 @@ impl Core {
         if !increments {
             return Ok(as_written(number));
         }
-        let value = number.digits as f64;
-        let modal = &self.modal;
-        Ok(match word.address {
-            b'D' | b'H' | b'M' | b'Q' | b'S' | b'T' | b'G' | b'L' | b'P' => value,
-            b'E' | b'F' => match (modal.feed_mode, modal.is_inch) {
-                (FeedMode::PerMinute, false) if self.settings.feed_per_min_fine => value / 1e3,
-                (FeedMode::PerMinute, false) => value,
-                (FeedMode::PerMinute, true) => value / 1e2,
-                (FeedMode::PerRevolution, false) if self.settings.feed_per_rev_fine => value / 1e3,
-                (FeedMode::PerRevolution, false) => value / 1e2,
-                (FeedMode::PerRevolution, true) => value / 1e4,
-            },
-            _ => {
-                // A quotient of whole numbers is the nearest float; a product of floats need not be.
-                let per_unit = if modal.is_inch {
-                    25_400_000 / self.settings.inch_increment.nm()
-                } else {
-                    1_000_000 / self.settings.metric_increment.nm()
-                };
-                value / per_unit as f64
-            }
-        })
+        // A quotient of whole numbers is the nearest float; a product of floats need not be.
+        Ok(number.digits as f64 / self.increments_per_unit(word.address))
     }
 }
 

@@ -7,8 +7,7 @@ use turnwright_control::Control;
 use turnwright_control::policy::{CallUnderModalCall, MacroCancelWithoutCall, NestedModalCall};
 use turnwright_syntax::{Block, Value, Word};
 
-use super::arguments::Arguments;
-use super::variables::Locals;
+use super::arguments::{Arguments, Passed};
 use crate::Environment;
 use crate::flow::{Frame, FrameKind, MacroFrame};
 use crate::index::Resume;
@@ -31,7 +30,7 @@ pub(crate) enum CallKind {
 pub(crate) struct ModalCall {
     target: Program,
     rounds: u32,
-    arguments: Box<Locals>,
+    arguments: Passed,
     is_each_block: bool,
 }
 
@@ -305,7 +304,7 @@ impl Core {
             return Ok(false);
         }
         let mut arguments = self.arguments(block, None, Arguments::OfBlock)?;
-        for (argument, stored) in arguments.iter_mut().zip(call.arguments.iter()) {
+        for (argument, stored) in arguments.values.iter_mut().zip(call.arguments.values.iter()) {
             // What the block does not say again is as the call said it.
             if super::is_null(*argument) {
                 *argument = *stored;
@@ -326,7 +325,7 @@ impl Core {
         &mut self,
         target: Program,
         rounds: u32,
-        arguments: Box<Locals>,
+        arguments: Passed,
         entry: MacroEntry,
         word: &Word,
         environment: &mut dyn Environment,
@@ -336,7 +335,7 @@ impl Core {
             return Ok(());
         }
         let caller = Box::new(self.macros.variables.locals());
-        self.macros.variables.set_locals(&arguments);
+        self.macros.variables.set_locals(&arguments.values);
         let frame = MacroFrame {
             start: target.start,
             rounds_left: rounds - 1,

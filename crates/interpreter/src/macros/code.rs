@@ -11,7 +11,7 @@ use std::ops::Range;
 use turnwright_syntax::{BinaryOperator, Comparison, Expression, Function, Node};
 
 use super::arithmetic::{Arithmetic, CodeFault, Rules, divide};
-use super::variables::{NULL, Variables, is_null, number};
+use super::variables::{LOCALS, NULL, Variables, is_null, number};
 
 /// Most intermediate results that one expression holds; the bracket limit of every control stays below.
 const STACK_MAX: usize = 24;
@@ -53,6 +53,8 @@ pub(crate) enum Op {
     CallTwo(Function),
     /// The variable whose number is the accumulator.
     Read,
+    /// `ADP` of the local variable in a slot.
+    AddPoint(u16),
     /// Null becomes zero.
     AsNumber,
     /// `ROUND` in a word: to the least increment of its address.
@@ -82,6 +84,8 @@ pub(crate) enum Outcome {
     Read(f64),
     /// The caller must round the value to what the word's address counts in, and go on in the same way.
     Round(f64),
+    /// As for [`Outcome::Read`], of a local variable that is an argument, with the point that its word lacked.
+    AddPoint(u16),
     /// It has no value.
     Fault(CodeFault),
 }
@@ -259,6 +263,10 @@ impl Machine {
                     self.at += place + 1;
                     return Outcome::Round(number(value));
                 }
+                Op::AddPoint(slot) => {
+                    self.at += place + 1;
+                    return Outcome::AddPoint(slot);
+                }
                 Op::AddConstant(constant) => Ok(value + constant),
                 Op::AddSlot(place) => Ok(value + slot(place)),
                 Op::SubtractConstant(constant) => Ok(value - constant),
@@ -368,6 +376,11 @@ impl Compiler<'_> {
                         machine.emit(Op::CallTwo(function), &place);
                     }
                     None => {
+                        let local = self.slot(first).filter(|slot| usize::from(*slot) < LOCALS);
+                        if let (Function::AddPoint, Some(slot)) = (function, local) {
+                            machine.emit(Op::AddPoint(slot), &place);
+                            return Ok(());
+                        }
                         self.node(machine, first, depth)?;
                         let op = if function == Function::Round && self.in_word {
                             Op::RoundToIncrement

@@ -15,6 +15,7 @@ mod system;
 mod type_a;
 mod variables;
 
+pub(crate) use arguments::Passed;
 use arithmetic::{ArcSine, Rules};
 pub(crate) use calls::{CallKind, CodeCalls, ModalCall, Program};
 pub(crate) use code::Code;
@@ -154,6 +155,7 @@ impl Core {
                     let increment = address.map_or(1.0, |address| self.word_increment(address));
                     (value / increment).round() * increment
                 }
+                Outcome::AddPoint(slot) => self.with_point(slot),
                 Outcome::Fault(fault) => {
                     let place = self.macros.machine.fault_place();
                     return Err(self.code_fault(fault, place).into());
