@@ -506,9 +506,9 @@ impl Core {
         if self.axes.machine.y.is_none() || (way.is_zero() && movement.is_zero()) {
             return;
         }
-        self.axes.preset.y = self.axes.preset.y + way;
+        self.axes.preset.y += way;
         self.axes.at.y = self.axes.at.y - way;
-        self.axes.untaken_y = self.axes.untaken_y + movement;
+        self.axes.untaken_y += movement;
         if !way.is_zero() {
             let others = OtherAxes { y: Some(self.axes.at.y), ..OtherAxes::default() };
             self.emit(Action::Relocate { to: self.tip, others: Some(Box::new(others)) });

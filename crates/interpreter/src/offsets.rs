@@ -399,7 +399,7 @@ impl Core {
                 (&mut offset.shift, &mut offset.shift_y)
             };
             *sum = Displacement::new(sum.x + part.x, sum.z + part.z);
-            *sum_y = *sum_y + part_y;
+            *sum_y += part_y;
         }
         if settings.zero_row_shifts {
             let work = self.offset_radius(OffsetTable::Geometry, self.offsets.row(0).geometry);
