@@ -87,13 +87,16 @@ pub(crate) struct Machine {
     /// M01 stops
     #[arg(long)]
     pub(crate) optional_stop: bool,
+    /// The program was typed in at the panel: G70 to G73, jumps and loops are refused in it
+    #[arg(long)]
+    pub(crate) mdi: bool,
     /// Treats warnings as errors
     #[arg(long, value_enum, value_name = "WHAT")]
     pub(crate) deny: Option<Deny>,
     /// Blocks executed before the run is stopped
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) max_blocks: Option<u64>,
-    /// Blocks of loops executed without a single command before the run is stopped
+    /// Blocks of loops executed without a single move before the run is stopped
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) max_idle_blocks: Option<u64>,
     /// Writes what the program prints with DPRNT and BPRNT to this file

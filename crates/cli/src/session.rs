@@ -8,7 +8,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use turnwright_control::{
-    Control, ControlFault, DEFAULT_CONTROL, Language, ParameterFault, Setup, SetupFault, control_names,
+    Control, ControlFault, DEFAULT_CONTROL, Language, Mode, ParameterFault, Setup, SetupFault, control_names,
     nearest,
 };
 use turnwright_diagnostics::{Diagnostic, Place, SourceId};
@@ -74,7 +74,10 @@ pub(crate) struct Session {
 impl Session {
     /// Chooses control and setup for a program.
     pub(crate) fn choose(text: &ProgramText, options: &Machine, speech: Speech) -> Result<Self, Finding> {
-        let (setup, setup_path) = find_setup(text, options, speech)?;
+        let (mut setup, setup_path) = find_setup(text, options, speech)?;
+        if options.mdi {
+            setup.start.mode = Mode::Mdi;
+        }
         let mut warning = None;
         let (mut control, reason) = if let Some(name) = &options.control {
             (load_control(name, "", speech)?, Reason::Option)

@@ -25,7 +25,7 @@ pub use parameter_text::{
 };
 pub use parameters::{Acts, Axis, Parameter, ParameterFault, Parameters, UnderNumber};
 pub use setup::{
-    AxisPair, LinearAxis, Machine, MachineAxes, Offset, OffsetRow, RotaryAxis, Setup, SetupFault,
+    AxisPair, LinearAxis, Machine, MachineAxes, Mode, Offset, OffsetRow, RotaryAxis, Setup, SetupFault,
     machine_names,
 };
 pub use signal::Signal;

@@ -509,6 +509,13 @@ policies! {
         /// Those and `RAND`, `SRAND`.
         ExtendedWithRandom,
     }
+    /// Parameters (`PRM[n]`), axis numbers (`AXNUM[X]`) and names of system variables (`[#_DATE]`) in expressions.
+    macro_names: MacroNames {
+        /// There are none.
+        None,
+        /// They are known. Which names there are is from memory.
+        Known,
+    }
     /// Conditions of `IF` and `WHILE` joined by `AND`, `OR` and `XOR`.
     joined_conditions: JoinedConditions {
         /// Refused: a condition is one comparison.
@@ -647,6 +654,13 @@ policies! {
         Absent,
         /// It is taken.
         ByWord,
+    }
+    /// Calls of programs in a program that was typed in at the panel.
+    calls_in_mdi: CallsInMdi {
+        /// As deep as in automatic operation.
+        AsInMemory,
+        /// The program called calls none itself.
+        OneLevel,
     }
     /// `M98` without a program.
     call_without_program: CallWithoutProgram {

@@ -164,11 +164,24 @@ pub struct Offset {
 pub struct Start {
     /// The operator has returned the axes to their reference points.
     pub homed: bool,
+    /// How the program got into the control.
+    pub mode: Mode,
+}
+
+/// Where the blocks of the main program come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Mode {
+    /// The memory of the control: automatic operation.
+    #[default]
+    Memory,
+    /// Typed in at the panel: what has to search the program is refused in it.
+    Mdi,
 }
 
 impl Default for Start {
     fn default() -> Self {
-        Self { homed: true }
+        Self { homed: true, mode: Mode::Memory }
     }
 }
 

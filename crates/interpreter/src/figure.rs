@@ -168,6 +168,7 @@ impl Core {
 
     /// Reads the figure that P and Q of a cycle block name.
     pub(crate) fn capture_figure(&mut self, call: &mut Call<'_>) -> Result<Captured, Alarm> {
+        self.refuse_in_mdi("cycle-not-in-memory", call.word)?;
         let range = self.range_words(call)?;
         let (first, _) = self.find_range(&range, call)?;
         let is_adjacent = self.look_between(first, &range, call)?;

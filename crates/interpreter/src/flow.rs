@@ -4,7 +4,8 @@
 //! `macros/`. Source: subprograms and program ends of both families.
 
 use turnwright_canon::{Action, CycleLabel, CycleOrigin, Phase};
-use turnwright_control::policy::{CallWithoutProgram, ComputedProgramNumber, ProgramNames};
+use turnwright_control::Mode;
+use turnwright_control::policy::{CallWithoutProgram, CallsInMdi, ComputedProgramNumber, ProgramNames};
 use turnwright_diagnostics::{Diagnostic, SourceId};
 use turnwright_syntax::{Block, ExtentKind, Value, Word};
 use turnwright_units::{Position, WorkTip};
@@ -78,9 +79,19 @@ impl Core {
         })
     }
 
+    /// Refuses what has to search the program in one that was typed in at the panel. The programs that it calls lie
+    /// in the memory.
+    pub(crate) fn refuse_in_mdi(&self, key: &'static str, word: Option<&Word>) -> Result<(), Alarm> {
+        if self.mode == Mode::Mdi && self.frames.is_empty() { Err(self.alarm_at(key, word)) } else { Ok(()) }
+    }
+
     /// Refuses a call beyond the depth that the control allows.
     pub(crate) fn check_depth(&self, word: &Word, is_macro: bool) -> Result<(), Alarm> {
         let (subprograms, macros) = self.call_depths();
+        let is_called_in_mdi = self.mode == Mode::Mdi && subprograms + macros > 0;
+        if is_called_in_mdi && self.control.policies.calls_in_mdi == CallsInMdi::OneLevel {
+            return Err(self.alarm("calls-too-deep", word));
+        }
         let limits = &self.control.limits;
         if is_macro && macros >= limits.macro_depth_max {
             return Err(self.alarm("macro-calls-too-deep", word));

@@ -3,7 +3,7 @@
 use std::collections::{HashSet, VecDeque};
 
 use turnwright_canon::{Command, CycleOrigin, OtherAxes, PathMode};
-use turnwright_control::{Control, Setup, SetupFault};
+use turnwright_control::{Control, Mode, Setup, SetupFault};
 use turnwright_cycles::Element;
 use turnwright_diagnostics::{Diagnostic, SourceId};
 use turnwright_syntax::Block;
@@ -117,6 +117,7 @@ pub(crate) struct Core {
     /// Axes beyond X and Z.
     pub(crate) axes: Axes,
     pub(crate) homing: Homing,
+    pub(crate) mode: Mode,
     pub(crate) strokes: Strokes,
     /// From program to work coordinates.
     pub(crate) transform: Transform,
@@ -283,6 +284,7 @@ impl Interpreter {
                 by_way_of: None,
                 others_by_way_of: OtherAxes::default(),
             },
+            mode: setup.start.mode,
             strokes,
             transform: Transform::default(),
             skip_place: modal.position,

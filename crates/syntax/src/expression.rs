@@ -69,12 +69,11 @@ pub enum Function {
     ToDecimal,
     Power,
     AddPoint,
-    Parameter,
     Random,
     RandomBetween,
 }
 
-const FUNCTIONS: [(&[u8], Function); 20] = [
+const FUNCTIONS: [(&[u8], Function); 19] = [
     (b"SIN", Function::Sin),
     (b"COS", Function::Cos),
     (b"TAN", Function::Tan),
@@ -92,10 +91,12 @@ const FUNCTIONS: [(&[u8], Function); 20] = [
     (b"BCD", Function::ToDecimal),
     (b"POW", Function::Power),
     (b"ADP", Function::AddPoint),
-    (b"PRM", Function::Parameter),
     (b"RAND", Function::Random),
     (b"SRAND", Function::RandomBetween),
 ];
+
+/// Longest name of a system variable.
+pub const VARIABLE_NAME_MAX: usize = 8;
 
 /// One part of an expression; numbers name other nodes of the same [`Expression`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,6 +111,19 @@ pub enum Node {
     Call(Function, usize, Option<usize>),
     /// Two nodes and the operator between them.
     Binary(BinaryOperator, usize, usize),
+    /// The number of the variable with a name, zeros behind it, and its subscript.
+    Named([u8; VARIABLE_NAME_MAX], Option<usize>),
+    /// `PRM[number]`, `PRM[number,bit]`, `PRM[…]/[axis]`.
+    Parameter {
+        /// The number of the parameter.
+        number: usize,
+        /// One of its bits.
+        bit: Option<usize>,
+        /// The number of an axis.
+        axis: Option<usize>,
+    },
+    /// `AXNUM[X]`: the number of the axis with a letter.
+    AxisNumber(u8),
 }
 
 /// An expression: nodes in the order they were completed, with their places; the last is the whole.
@@ -427,12 +441,59 @@ impl<'a> Parser<'a> {
             return self.fault(Expected::LessNesting);
         }
         let index = match self.peek() {
+            Some(b'_') if self.open > 0 => self.named(depth + 1)?,
             Some(b'#') => self.variable(depth + 1)?,
             Some(b'[') => self.bracket(depth + 1)?,
             Some(b'0'..=b'9') => self.number()?,
             _ => return Err(nameless_variable(start)),
         };
         Ok(self.add(Node::Variable(index), start))
+    }
+
+    /// `_NAME`, perhaps with a subscript.
+    fn named(&mut self, depth: usize) -> Result<usize, ExpressionFault> {
+        let start = self.at;
+        self.at += 1;
+        let length =
+            self.line[self.at..self.end].iter().take_while(|byte| byte.is_ascii_alphanumeric()).count();
+        let mut name = [0; VARIABLE_NAME_MAX];
+        if length == 0 || length > VARIABLE_NAME_MAX {
+            return Err(nameless_variable(start));
+        }
+        name[..length].copy_from_slice(&self.line[self.at..self.at + length]);
+        self.at += length;
+        let subscript = if self.peek() == Some(b'[') { Some(self.bracket(depth)?) } else { None };
+        Ok(self.add(Node::Named(name, subscript), start))
+    }
+
+    /// What stands behind `PRM`.
+    fn parameter(&mut self, start: usize, depth: usize) -> Result<usize, ExpressionFault> {
+        if !self.open_bracket() {
+            return self.fault(Expected::OpeningBracket);
+        }
+        let number = self.inner(depth)?;
+        let bit = if self.take(b',') { Some(self.inner(depth)?) } else { None };
+        self.expect_closing()?;
+        let back = self.at;
+        let axis =
+            if self.take(b'/') && self.peek() == Some(b'[') { Some(self.bracket(depth)?) } else { None };
+        if axis.is_none() {
+            self.at = back;
+        }
+        Ok(self.add(Node::Parameter { number, bit, axis }, start))
+    }
+
+    /// What stands behind `AXNUM`.
+    fn axis_number(&mut self, start: usize) -> Result<usize, ExpressionFault> {
+        if !self.open_bracket() {
+            return self.fault(Expected::OpeningBracket);
+        }
+        let Some(letter) = self.peek().filter(u8::is_ascii_alphabetic) else {
+            return self.fault(Expected::Arguments);
+        };
+        self.at += 1;
+        self.expect_closing()?;
+        Ok(self.add(Node::AxisNumber(letter.to_ascii_uppercase()), start))
     }
 
     fn bracket(&mut self, depth: usize) -> Result<usize, ExpressionFault> {
@@ -464,6 +525,17 @@ impl<'a> Parser<'a> {
         // A function may be written with its first two letters.
         let length = self.line[start..self.end].iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
         let name = self.line[start..start + length].to_ascii_uppercase();
+        match name.as_slice() {
+            b"PRM" => {
+                self.at += length;
+                return self.parameter(start, depth + 1);
+            }
+            b"AXNUM" => {
+                self.at += length;
+                return self.axis_number(start);
+            }
+            _ => {}
+        }
         let found = FUNCTIONS
             .iter()
             .find(|(word, _)| *word == name.as_slice())
@@ -487,14 +559,12 @@ impl<'a> Parser<'a> {
             self.bare_argument.get_or_insert(start as u32..self.at as u32);
             argument
         };
-        let divides = matches!(function, Function::ArcTan | Function::Parameter);
-        if divides && self.peek() == Some(b'/') && (second.is_none() || *function == Function::Parameter) {
+        let divides = *function == Function::ArcTan;
+        if divides && self.peek() == Some(b'/') && second.is_none() {
             let back = self.at;
             self.at += 1;
             if self.peek() == Some(b'[') {
-                let behind = self.bracket(depth + 1)?;
-                // `PRM[n,b]/[a]`: the axis takes the place of the bit, which axis parameters hardly have.
-                second = Some(behind);
+                second = Some(self.bracket(depth + 1)?);
             } else {
                 self.at = back;
             }
@@ -590,6 +660,14 @@ impl<'a> Parser<'a> {
         }
         self.blanks();
         let variable = self.at;
+        if self.line[self.at..self.end].starts_with(b"[#_") {
+            self.begin();
+            self.open_bracket();
+            self.at += 1;
+            self.named(0)?;
+            self.expect_closing()?;
+            return self.assignment(variable);
+        }
         if self.take(b'#') {
             self.begin();
             match self.peek() {
@@ -598,18 +676,23 @@ impl<'a> Parser<'a> {
                 Some(b'0'..=b'9') => self.number()?,
                 _ => return Err(nameless_variable(variable)),
             };
-            // Whoever refuses the variable means all of it.
-            if let Some((_, place)) = self.nodes.last_mut() {
-                place.start = variable as u32;
-                place.end = self.at as u32;
-            }
-            let target = self.finish();
-            if !self.take(b'=') {
-                return self.fault(Expected::EqualsSign);
-            }
-            return Ok(Statement::Assign(target, self.whole_expression(SUMS)?));
+            return self.assignment(variable);
         }
         self.fault(Expected::Statement)
+    }
+
+    /// `= value`, behind the variable that begins at `variable`.
+    fn assignment(&mut self, variable: usize) -> Result<Statement, ExpressionFault> {
+        // Whoever refuses the variable means all of it.
+        if let Some((_, place)) = self.nodes.last_mut() {
+            place.start = variable as u32;
+            place.end = self.at as u32;
+        }
+        let target = self.finish();
+        if !self.take(b'=') {
+            return self.fault(Expected::EqualsSign);
+        }
+        Ok(Statement::Assign(target, self.whole_expression(SUMS)?))
     }
 }
 
@@ -634,6 +717,15 @@ mod tests {
             Node::Binary(operator, left, right) => {
                 format!("({} {operator:?} {})", show(expression, *left), show(expression, *right))
             }
+            Node::Named(name, subscript) => {
+                let subscript = subscript.map_or(String::new(), |s| format!("[{}]", show(expression, s)));
+                format!("{}{subscript}", String::from_utf8_lossy(name).trim_end_matches('\0'))
+            }
+            Node::Parameter { number, bit, axis } => {
+                let part = |part: Option<usize>| part.map_or("-".to_string(), |part| show(expression, part));
+                format!("PRM({},{},{})", show(expression, *number), part(*bit), part(*axis))
+            }
+            Node::AxisNumber(letter) => format!("AXNUM({})", char::from(*letter)),
         }
     }
 
@@ -642,6 +734,19 @@ mod tests {
             Ok(tree) => show(&tree, tree.root()),
             Err(fault) => format!("expected {:?} at {}", fault.expected, fault.place.start),
         }
+    }
+
+    #[test]
+    fn names_parameters_and_axes() {
+        assert_eq!(expression("[#_ABSIO[AXNUM[z]]]+1"), "(#ABSIO[AXNUM(Z)] Add 1)");
+        assert_eq!(expression("[#_DATE]"), "#DATE");
+        assert_eq!(expression("#_DATE"), "expected VariableNumber at 0");
+        assert_eq!(expression("[#_]"), "expected VariableNumber at 2");
+        assert_eq!(expression("PRM[1320]/[2]/2"), "(PRM(1320,-,2) Divide 2)");
+        assert_eq!(expression("PRM[#1,3]"), "PRM(#1,3,-)");
+        assert_eq!(expression("PRM[#1,3]/[#2]"), "PRM(#1,3,#2)");
+        assert_eq!(expression("PRM 1320"), "expected OpeningBracket at 4");
+        assert_eq!(expression("AXNUM[1]"), "expected Arguments at 6");
     }
 
     #[test]

@@ -48,6 +48,7 @@ impl Scanner<'_> {
                 b';' => return self.semicolon(1),
                 b'/' => self.skip(),
                 b'#' => return self.macro_statement(),
+                b'[' if self.line[self.at..].starts_with(b"[#_") => return self.macro_statement(),
                 b',' => self.comma(),
                 b'%' if self.nothing_yet() => return self.percent(),
                 b':' if self.nothing_yet() => self.colon(),

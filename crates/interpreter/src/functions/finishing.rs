@@ -20,6 +20,7 @@ pub(super) static FINISHING: Function =
 
 fn finishing(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     core.refuse_axis_words(call)?;
+    core.refuse_in_mdi("cycle-not-in-memory", call.word)?;
     let range = core.range_words(call)?;
     core.compare_with_roughing(&range);
     let (first, _) = core.find_range(&range, call)?;

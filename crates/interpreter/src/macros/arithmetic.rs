@@ -31,6 +31,10 @@ pub(crate) enum CodeFault {
     LoopNumber,
     /// Conditions are joined on a control that compares two values only.
     JoinedConditions,
+    /// No variable has this name, or the name takes its subscript otherwise.
+    NoName,
+    /// A jump or a loop in a program that was typed in at the panel.
+    FlowInMdi,
 }
 
 /// How this control computes.
@@ -49,6 +53,8 @@ pub(crate) struct Rules {
     pub(crate) has_newer_functions: bool,
     pub(crate) has_random: bool,
     pub(crate) takes_bare_arguments: bool,
+    /// `PRM`, `AXNUM` and variables by name.
+    pub(crate) has_names: bool,
     pub(crate) joins_conditions: bool,
     pub(crate) bracket_depth_max: u8,
 }

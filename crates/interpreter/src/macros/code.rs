@@ -11,6 +11,7 @@ use std::ops::Range;
 use turnwright_syntax::{BinaryOperator, Comparison, Expression, Function, Node};
 
 use super::arithmetic::{Arithmetic, CodeFault, Rules, divide};
+use super::names;
 use super::variables::{LOCALS, NULL, Variables, is_null, number};
 
 /// Most intermediate results that one expression holds; the bracket limit of every control stays below.
@@ -55,6 +56,10 @@ pub(crate) enum Op {
     Read,
     /// `ADP` of the local variable in a slot.
     AddPoint(u16),
+    /// A parameter: its number and bit were pushed, the accumulator is the axis.
+    Parameter,
+    /// The number of the axis with a letter.
+    AxisNumber(u8),
     /// Null becomes zero.
     AsNumber,
     /// `ROUND` in a word: to the least increment of its address.
@@ -86,6 +91,10 @@ pub(crate) enum Outcome {
     Round(f64),
     /// As for [`Outcome::Read`], of a local variable that is an argument, with the point that its word lacked.
     AddPoint(u16),
+    /// The value of a parameter is asked for in the same way: its number, bit and axis.
+    Parameter(f64, f64, f64),
+    /// The number of the axis with a letter.
+    AxisNumber(u8),
     /// It has no value.
     Fault(CodeFault),
 }
@@ -267,6 +276,16 @@ impl Machine {
                     self.at += place + 1;
                     return Outcome::AddPoint(slot);
                 }
+                Op::Parameter => {
+                    self.at += place + 1;
+                    self.depth -= 2;
+                    let (number, bit) = (self.stack[self.depth], self.stack[self.depth + 1]);
+                    return Outcome::Parameter(number, bit, value);
+                }
+                Op::AxisNumber(letter) => {
+                    self.at += place + 1;
+                    return Outcome::AxisNumber(letter);
+                }
                 Op::AddConstant(constant) => Ok(value + constant),
                 Op::AddSlot(place) => Ok(value + slot(place)),
                 Op::SubtractConstant(constant) => Ok(value - constant),
@@ -394,8 +413,51 @@ impl Compiler<'_> {
             Node::Binary(operator, left, right) => {
                 self.binary(machine, operator, (left, right), depth, &place)?
             }
+            Node::Named(..) | Node::Parameter { .. } | Node::AxisNumber(_)
+                if !machine.arithmetic.rules.has_names =>
+            {
+                return Err((CodeFault::NoFunction, place));
+            }
+            Node::Named(name, subscript) => {
+                let Some(number) = names::number_of(&name, subscript.is_some()) else {
+                    return Err((CodeFault::NoName, place));
+                };
+                match subscript {
+                    None => machine.emit(Op::Constant(f64::from(number)), &place),
+                    Some(subscript) => {
+                        self.as_number(machine, subscript, depth)?;
+                        machine.emit(Op::AddConstant(f64::from(number)), &place);
+                    }
+                }
+            }
+            Node::Parameter { number, bit, axis } => {
+                self.as_number(machine, number, depth)?;
+                machine.emit(Op::Push, &place);
+                self.perhaps(machine, bit, depth + 1, &place)?;
+                machine.emit(Op::Push, &place);
+                self.perhaps(machine, axis, depth + 2, &place)?;
+                machine.emit(Op::Parameter, &place);
+            }
+            Node::AxisNumber(letter) => machine.emit(Op::AxisNumber(letter), &place),
         }
         Ok(())
+    }
+
+    /// A node as a number, or null where there is none.
+    fn perhaps(
+        &self,
+        machine: &mut Machine,
+        index: Option<usize>,
+        depth: usize,
+        place: &Range<u32>,
+    ) -> Compiled {
+        match index {
+            Some(index) => self.as_number(machine, index, depth),
+            None => {
+                machine.emit(Op::Constant(NULL), place);
+                Ok(())
+            }
+        }
     }
 
     /// A node whose null counts as zero.
@@ -496,8 +558,6 @@ impl Compiler<'_> {
             Function::Power | Function::AddPoint if !rules.has_newer_functions => CodeFault::NoFunction,
             Function::Random | Function::RandomBetween if !rules.has_random => CodeFault::NoFunction,
             Function::ArcTan if second.is_none() && !rules.has_newer_functions => CodeFault::Arguments,
-            // Parameters are numbers of the control's memory, not of a program's arithmetic.
-            Function::Parameter => CodeFault::NoFunction,
             _ => return Ok(()),
         };
         Err((fault, place.clone()))

@@ -8,6 +8,7 @@ mod arguments;
 mod arithmetic;
 mod calls;
 mod code;
+mod names;
 mod output;
 mod statement;
 mod stored;
@@ -22,7 +23,7 @@ pub(crate) use code::Code;
 use code::{Machine, Outcome};
 pub(crate) use statement::Statement;
 use turnwright_control::policy::{
-    ArcSineRange, BareArgument, JoinedConditions, MacroFunctions, MacroPrecision, NullVariable,
+    ArcSineRange, BareArgument, JoinedConditions, MacroFunctions, MacroNames, MacroPrecision, NullVariable,
 };
 use turnwright_control::{Control, Parameters};
 use turnwright_syntax::{Block, Decimal, Resolved, Value, Word, parse_expression};
@@ -77,6 +78,7 @@ impl Macros {
             },
             has_newer_functions: policies.macro_functions != MacroFunctions::Basic,
             has_random: policies.macro_functions == MacroFunctions::ExtendedWithRandom,
+            has_names: policies.macro_names == MacroNames::Known,
             joins_conditions: policies.joined_conditions == JoinedConditions::Taken,
             takes_bare_arguments: policies.bare_argument == BareArgument::Taken,
             bracket_depth_max: limits.bracket_depth_max,
@@ -156,6 +158,8 @@ impl Core {
                     (value / increment).round() * increment
                 }
                 Outcome::AddPoint(slot) => self.with_point(slot),
+                Outcome::Parameter(number, bit, axis) => self.parameter_value(number, bit, axis)?,
+                Outcome::AxisNumber(letter) => self.axis_number(letter)?,
                 Outcome::Fault(fault) => {
                     let place = self.macros.machine.fault_place();
                     return Err(self.code_fault(fault, place).into());

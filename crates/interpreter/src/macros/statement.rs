@@ -7,6 +7,7 @@
 
 use std::ops::Range;
 
+use turnwright_control::Mode;
 use turnwright_diagnostics::Diagnostic;
 use turnwright_syntax::{Expected, Expression, ExpressionFault, Node, Statement as Written, parse_statement};
 
@@ -88,6 +89,10 @@ impl Core {
         written: &Written,
         range: &Range<u32>,
     ) -> Result<Statement, (CodeFault, Range<u32>)> {
+        let is_plain = matches!(written, Written::Assign(..) | Written::IfThen(..) | Written::Output(_));
+        if !is_plain && self.mode == Mode::Mdi && self.frames.is_empty() {
+            return Err((CodeFault::FlowInMdi, range.clone()));
+        }
         Ok(match written {
             Written::Assign(target, value) => {
                 let (target, value) = self.compile_assignment(target, value)?;
@@ -373,6 +378,8 @@ impl Core {
             CodeFault::BareArgument => "opening-bracket-missing",
             CodeFault::LoopNumber => "loop-number-illegal",
             CodeFault::JoinedConditions => "expression-format",
+            CodeFault::FlowInMdi => "macro-flow-in-mdi",
+            CodeFault::NoName => "variable-number-illegal",
         };
         let quote = self.quote(place.start, place.end);
         self.finish(Diagnostic::alarm(key).at(self.at.span(place.start, place.end)).with("word", quote))
