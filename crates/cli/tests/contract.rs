@@ -37,6 +37,15 @@ fn the_trace_names_the_file_of_a_line_that_another_file_holds() {
 }
 
 #[test]
+fn a_program_typed_in_at_the_panel_has_no_loops() {
+    let folder = Folder::new();
+    let file = folder.file("loop.nc", "WHILE[#1LT2]DO1\n#1=#1+1\nG00 X#1 Z0\nEND1\nM30\n");
+    assert_eq!(turnwright(&["check", &file]).status, 0);
+    let ran = turnwright(&["check", &file, "--mdi", "--format", "json"]);
+    assert_eq!((ran.status, &json_lines(&ran.out)[0]["key"]), (1, &Value::from("macro-flow-in-mdi")));
+}
+
+#[test]
 fn diagnostics_go_to_standard_error_for_people_and_to_standard_output_for_scripts() {
     let folder = Folder::new();
     let alarms = folder.file("alarms.nc", ALARMS);
