@@ -14,7 +14,9 @@ mod listing;
 pub use axes::{Interpolation, OtherAxes, SectionPlace, SidePlane, SidePoint, SpeedRatio};
 pub use curve::Curve;
 pub use listing::write_listing;
-use turnwright_units::{Angle, Feed, Lead, Position, Revolutions, Rpm, Seconds, SurfaceSpeed, WorkTip};
+use turnwright_units::{
+    Angle, Feed, Lead, Position, Revolutions, Rpm, Seconds, SurfaceSpeed, WorkNose, WorkTip,
+};
 
 /// One command and where it came from.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +25,17 @@ pub struct Command {
     pub action: Action,
     /// Which words asked for it.
     pub origin: Origin,
+    /// Where the centre of the tool nose is at the end of a move, while nose compensation is on; boxed, so that the
+    /// moves of every day stay small.
+    pub nose: Option<Box<Position<WorkNose>>>,
+}
+
+impl Command {
+    /// A command without nose compensation.
+    #[inline]
+    pub const fn new(action: Action, origin: Origin) -> Self {
+        Self { action, origin, nose: None }
+    }
 }
 
 /// Everything that a program can ask of the machine.

@@ -8,6 +8,8 @@
 //!
 //! Other axes follow the position: `c90` and `b30` in degrees, `y5` in millimetres, `v` the place on the virtual
 //! axis; the centre of an arc across the section names its two axes, `c(d40 y0)`.
+//!
+//! With nose compensation the place of the nose centre follows: `nose(d41.6 z-15)`.
 
 use turnwright_units::{Feed, Position, WorkTip, write_degrees, write_fixed, write_millimetres};
 
@@ -123,6 +125,13 @@ pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
             out.extend_from_slice(b"output ");
             out.extend_from_slice(text.as_bytes());
         }
+    }
+    if let Some(nose) = &command.nose {
+        out.extend_from_slice(b" nose(d");
+        write_millimetres(out, nose.x.to_diameter().0, decimals);
+        out.extend_from_slice(b" z");
+        write_millimetres(out, nose.z, decimals);
+        out.push(b')');
     }
     if let Some(cycle) = &command.origin.cycle {
         out.extend_from_slice(format!("  {} {}", cycle.label, cycle.phase.word()).as_bytes());

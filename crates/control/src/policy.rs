@@ -321,6 +321,42 @@ policies! {
         /// Both are read, each by its letters; a warning says where the parameter wants the other.
         Recognised,
     }
+    /// A nose radius below zero.
+    negative_nose_radius: NegativeNoseRadius {
+        /// Left and right of the path are exchanged.
+        ExchangesSides,
+        /// Refused.
+        Alarm,
+    }
+    /// More blocks without a move in nose compensation than the control reads ahead over.
+    compensation_gap: CompensationGap {
+        /// The nose stands square to the end of the move before them, and goes on from there.
+        Square,
+        /// Refused.
+        Alarm,
+    }
+    /// A subprogram call in nose compensation.
+    call_in_compensation: CallInCompensation {
+        /// The path goes on in the subprogram.
+        Allowed,
+        /// Refused.
+        Alarm,
+    }
+    /// A turning or facing cycle in nose compensation whose imaginary tip points away from the work.
+    single_cycle_overcut: SingleCycleOvercut {
+        /// Cut with the nose beside the work all the same.
+        Cut,
+        /// Refused.
+        Alarm,
+    }
+    /// What the third type of start and end of nose compensation is.
+    start_up_type_c: StartUpTypeC {
+        /// Starts and ends with a move are those of the other types; a code alone moves the nose square to the next
+        /// move, or from the path to the programmed point.
+        ShiftsWithoutMove,
+        /// The nose stands square to both moves, one after the other.
+        BothSquare,
+    }
     /// What roughing with pockets does.
     type_two: TypeTwo {
         /// It exists.
@@ -811,6 +847,8 @@ pub struct Limits {
     pub corner_gap_max: u8,
     /// The same between the lines of a drawing dimension.
     pub drawing_gap_max: u8,
+    /// Blocks without a move between two moves of a compensated path over which the control reads ahead.
+    pub compensation_gap_max: u8,
     /// Largest size of a corner between any cuts; larger ones are passed over.
     pub corner_size_max_mm: u16,
     /// Most blocks in the figure of a cycle.

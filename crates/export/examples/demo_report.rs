@@ -81,7 +81,7 @@ impl Demo {
     }
 
     fn add(&mut self, action: Action, seconds: f64) {
-        self.path.add(&Command { action, origin: self.origin }, seconds);
+        self.path.add(&Command::new(action, self.origin), seconds);
     }
 
     fn rapid(&mut self, diameter_mm: f64, z_mm: f64) {

@@ -443,12 +443,12 @@ mod tests {
     }
 
     fn rapid(to: Position<WorkTip>, path: RapidPath) -> Command {
-        Command { action: Action::Rapid { to, path, others: None }, origin: Origin::line(1) }
+        Command::new(Action::Rapid { to, path, others: None }, Origin::line(1))
     }
 
     fn feed(to: Position<WorkTip>, shape: Shape) -> Command {
         let feed = Feed::PerRevolution(FeedPerRevolution(Length::from_nm(200_000)));
-        Command { action: Action::Feed { to, shape, feed, others: None }, origin: Origin::line(2) }
+        Command::new(Action::Feed { to, shape, feed, others: None }, Origin::line(2))
     }
 
     fn recorder() -> PathRecorder {
@@ -465,7 +465,7 @@ mod tests {
         let others = OtherAxes { v: Some(Length::from_mm(4)), ..OtherAxes::default() };
         let cut = Action::Feed { to: at(3), shape: Shape::Line, feed, others: Some(Box::new(others)) };
         for action in [Action::Interpolation(polar), cut] {
-            path.add(&Command { action, origin: Origin::line(1) }, 1.0);
+            path.add(&Command::new(action, Origin::line(1)), 1.0);
         }
         let [segment] = path.segments() else { panic!("one segment") };
         assert_eq!((segment.start.radius_mm, segment.end.radius_mm), (3.0, 5.0));

@@ -9,11 +9,18 @@ mod arc;
 mod corner;
 mod curve;
 mod line;
+mod offset;
+mod segment;
+mod track;
+mod vector;
 
 pub use arc::{ArcFault, centre_from_radius, sweep_rad};
-pub use corner::{Bend, Breaking, Corner, CornerFault, Segment, break_corner};
+pub use corner::{Breaking, Corner, CornerFault, break_corner};
 pub use curve::{Conic, CurveArc, CurveArcs, CurvePath, circle_through, ellipse_centre, parabola_vertex};
 pub use line::Line;
+pub use offset::{Joint, JointFault, Joints, Offset, Side, StartUp};
+pub use segment::{Bend, Segment};
+pub use vector::Vector;
 
 /// A place in the half-section.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

@@ -150,7 +150,10 @@ impl Core {
         }
         let motion = self.modal.motion;
         let function = codes.one_shot.map_or(motion, |one_shot| one_shot.id).get();
-        let other_letters = codes.mode_letters | auxiliary.letters();
+        let mut other_letters = codes.mode_letters | auxiliary.letters();
+        if self.compensation.is_some() {
+            other_letters |= self.wall_letters();
+        }
         self.check_letters(block, function, other_letters)?;
         if self.axes.plane != Plane::Zx {
             self.refuse_cycle_plane(block, function)?;
@@ -195,6 +198,9 @@ impl Core {
         }
         if self.corner.is_some() {
             self.check_open_path()?;
+        }
+        if self.compensation.is_some() {
+            self.check_compensation(!auxiliary.has_flow())?;
         }
         if auxiliary.acts_behind() | self.stops_once {
             self.behind_move(auxiliary, depth, block, environment)?;

@@ -214,7 +214,8 @@ impl Core {
     fn follow_parameters(&mut self, key: &str, axis: Option<Axis>) {
         let always =
             self.control.policies.decimal_rule == turnwright_control::policy::DecimalRule::AlwaysCalculator;
-        self.settings = Settings::new(&self.control.parameters, always, self.control.limits.number_digits);
+        let turnwright_control::Control { parameters, policies, limits, .. } = &self.control;
+        self.settings = Settings::new(parameters, policies, always, limits.number_digits);
         self.dispatch = Dispatch::new(&self.control);
         self.with_new_zero(|core| core.zeros.follow_parameter(&core.control, key, axis));
     }

@@ -3,9 +3,11 @@
 //! Where programs and sequence numbers stand is the index's business; what a macro call hands over is in
 //! `macros/`. Source: subprograms and program ends of both families.
 
-use turnwright_canon::{Action, CycleLabel, CycleOrigin, Phase};
+use turnwright_canon::{Action, CycleLabel, CycleOrigin, Phase, RapidPath};
 use turnwright_control::Mode;
-use turnwright_control::policy::{CallWithoutProgram, CallsInMdi, ComputedProgramNumber, ProgramNames};
+use turnwright_control::policy::{
+    CallInCompensation, CallWithoutProgram, CallsInMdi, ComputedProgramNumber, ProgramNames,
+};
 use turnwright_diagnostics::{Diagnostic, SourceId};
 use turnwright_syntax::{Block, ExtentKind, Value, Word};
 use turnwright_units::{Position, WorkTip};
@@ -207,13 +209,22 @@ impl Core {
         if self.corner.is_some() {
             return Err(self.corner_without_next());
         }
+        let calls = matches!(flow, Flow::Call | Flow::CallExternal | Flow::CallProgram(_));
+        if calls
+            && self.control.policies.call_in_compensation == CallInCompensation::Alarm
+            && self.is_compensating()
+        {
+            return Err(self.alarm_at("call-in-compensation", word.as_ref()));
+        }
         match flow {
             Flow::Stop => {
+                self.stop_reading_ahead()?;
                 self.emit(Action::Stop);
                 self.sync = Some(SyncReason::CycleStart);
                 Ok(())
             }
             Flow::OptionalStop => {
+                self.stop_reading_ahead()?;
                 self.emit(Action::OptionalStop);
                 if environment.stops_optionally() {
                     self.sync = Some(SyncReason::CycleStart);
@@ -221,6 +232,7 @@ impl Core {
                 Ok(())
             }
             Flow::End => {
+                self.end_compensation()?;
                 self.emit(Action::End);
                 self.is_over = true;
                 Ok(())
@@ -559,6 +571,7 @@ impl Core {
             return Err(self.figure_without_end());
         }
         if self.settings.end_of_record_allowed && self.frames.is_empty() {
+            self.end_compensation()?;
             self.emit(Action::End);
             self.is_over = true;
             return Ok(());
@@ -580,10 +593,8 @@ impl Core {
         self.in_cycle = Some(CycleOrigin { label: CycleLabel(code), pass: 1, phase: Phase::Home });
         // Each axis goes back at its own rate, whatever the parameter for rapid moves says.
         self.modal.position = home;
-        self.emit_move(
-            home,
-            Action::Rapid { to: home, path: turnwright_canon::RapidPath::EachAxis, others: None },
-        )?;
+        let back = Action::Rapid { to: home, path: RapidPath::EachAxis, others: None };
+        self.without_vector(|core| core.emit_move(home, back))?;
         self.in_cycle = None;
         if let Some(frame) = self.frames.pop() {
             self.go(frame.back, environment)?;

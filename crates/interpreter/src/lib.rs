@@ -18,6 +18,7 @@ mod auxiliary;
 mod axes;
 mod block;
 mod cache;
+mod compensation;
 mod coordinates;
 mod corner;
 mod data_list;

@@ -13,6 +13,7 @@ use crate::Environment;
 use crate::auxiliary::Waiting;
 use crate::axes::{Axes, Places};
 use crate::cache::Cache;
+use crate::compensation::Compensation;
 use crate::corner::OpenPath;
 use crate::data_list::{DataList, ToolLife};
 use crate::figure::FigureRange;
@@ -161,6 +162,8 @@ pub(crate) struct Core {
     pub(crate) capture: Option<Capture>,
     /// Elements that wait for a later block.
     pub(crate) corner: Option<OpenPath>,
+    /// Nose compensation, from G41 or G42 until the move behind G40.
+    pub(crate) compensation: Option<Box<Compensation>>,
     /// First and last sequence numbers of figures that were roughed.
     pub(crate) roughed: Vec<(u32, u32)>,
     /// Lines of figures that were finished before anything roughed them.
@@ -224,7 +227,8 @@ impl Interpreter {
     ) -> Result<Self, SetupFault> {
         let always =
             control.policies.decimal_rule == turnwright_control::policy::DecimalRule::AlwaysCalculator;
-        let mut settings = Settings::new(&control.parameters, always, control.limits.number_digits);
+        let mut settings =
+            Settings::new(&control.parameters, &control.policies, always, control.limits.number_digits);
         if setup.machine.is_some() || setup.rates.contains_key("cutting_max_mm_per_min") {
             // What the control does not limit, the machine that the user named does.
             let machine_max = setup.machine()?.cutting_max_mm_per_min;
@@ -316,6 +320,7 @@ impl Interpreter {
             in_cycle: None,
             capture: None,
             corner: None,
+            compensation: None,
             roughed: Vec::new(),
             finished_first: Vec::new(),
             thread_blocks: 0,
@@ -353,7 +358,7 @@ impl Interpreter {
 
     /// Where the tool tip stands.
     pub fn position(&self) -> Position<WorkTip> {
-        self.core.tip
+        self.core.stands()
     }
 
     /// The control in use.
@@ -410,16 +415,31 @@ impl Interpreter {
             };
             match result {
                 Ok(()) => {}
+                Err(Halt::Wait(_)) if self.core.has_waiting_move() => self.finish_waiting_move(),
                 Err(Halt::Wait(reason)) => {
                     self.core.moves_done = true;
                     return Step::NeedSync(reason);
                 }
-                Err(Halt::Alarm(alarm)) => {
-                    self.core.is_over = true;
-                    self.core.active = None;
-                    self.alarm = Some(alarm);
-                }
+                Err(Halt::Alarm(alarm)) => self.stop(alarm),
             }
         }
+    }
+
+    /// The control waits for the moves read so far: the one that waits for the next goes without it.
+    #[cold]
+    fn finish_waiting_move(&mut self) {
+        if let Err(alarm) = self.core.stop_reading_ahead() {
+            self.stop(alarm);
+        }
+    }
+
+    /// The control stops behind the moves that it has read.
+    #[cold]
+    fn stop(&mut self, alarm: Alarm) {
+        // What is wrong with the last of them would only have come to light later.
+        let _ = self.core.stop_reading_ahead();
+        self.core.is_over = true;
+        self.core.active = None;
+        self.alarm = Some(alarm);
     }
 }

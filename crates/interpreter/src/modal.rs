@@ -1,11 +1,13 @@
 //! The modal state: everything that stays in force from block to block.
 
 use turnwright_canon::{PathMode, SpindleState};
+use turnwright_control::policy::Policies;
 use turnwright_control::{Axis, Parameters};
 use turnwright_cycles::FlankInfeed;
 use turnwright_units::{LeastIncrement, Length, Position, Radius, Rpm, SurfaceSpeed, WorkTip};
 
 use crate::axes::Plane;
+use crate::compensation::CompensationSettings;
 use crate::functions::FunctionId;
 use crate::functions::hole::{HoleInForce, HoleSettings};
 use crate::functions::multi_thread::RunOutWords;
@@ -204,6 +206,7 @@ pub(crate) struct Settings {
     pub(crate) rapid_escape: bool,
     pub(crate) hole: HoleSettings,
     pub(crate) offsets: OffsetSettings,
+    pub(crate) compensation: CompensationSettings,
 }
 
 impl Settings {
@@ -232,7 +235,12 @@ impl Settings {
         }
     }
 
-    pub(crate) fn new(parameters: &Parameters, always_calculator: bool, digits: u8) -> Self {
+    pub(crate) fn new(
+        parameters: &Parameters,
+        policies: &Policies,
+        always_calculator: bool,
+        digits: u8,
+    ) -> Self {
         let bit = |name| parameters.bit(name);
         let mm = |name: &str| Length::from_nm((parameters.value(name) * 1e6).round() as i64);
         let count = |name: &str| parameters.value(name).clamp(0.0, 1e9) as u32;
@@ -359,6 +367,7 @@ impl Settings {
             rapid_escape: bit("rapid-escape"),
             hole: HoleSettings::new(parameters),
             offsets: OffsetSettings::new(parameters),
+            compensation: CompensationSettings::new(parameters, policies),
         }
     }
 }

@@ -139,15 +139,15 @@ impl Core {
         if !self.is_capturing() {
             let origin = self.origin();
             match &mut self.corner {
-                None => self.out.push_back(Command { action, origin }),
-                Some(path) => path.hold(Command { action, origin }),
+                None => self.pass_on(Command::new(action, origin)),
+                Some(path) => path.hold(Command::new(action, origin)),
             }
         }
     }
 
     /// Gives out a move of the block in work and takes its end as the tool's place.
     #[inline]
-    pub(crate) fn emit_move(&mut self, to: Position<WorkTip>, mut action: Action) -> Result<(), Alarm> {
+    pub(crate) fn emit_move(&mut self, to: Position<WorkTip>, action: Action) -> Result<(), Alarm> {
         if self.capture.is_some() {
             return self.capture_move(to, &action);
         }
@@ -158,12 +158,21 @@ impl Core {
         let from = std::mem::replace(&mut self.tip, to);
         if goes {
             if self.looks_at_moves {
-                action = self.looked_at(from, action)?;
+                return self.emit_looked_at(from, action);
             }
             let origin = self.origin();
-            self.out.push_back(Command { action, origin });
+            self.out.push_back(Command::new(action, origin));
         }
         Ok(())
+    }
+
+    #[cold]
+    fn emit_looked_at(&mut self, from: Position<WorkTip>, action: Action) -> Result<(), Alarm> {
+        if self.compensation.is_some() {
+            self.compensate(from, action)
+        } else {
+            self.give(from, action, self.origin(), None)
+        }
     }
 
     fn capture_move(&mut self, to: Position<WorkTip>, action: &Action) -> Result<(), Alarm> {
@@ -239,6 +248,7 @@ impl Core {
         }
         // The first move of the cycle takes the whole movement of the offset along.
         self.untaken = None;
+        self.suspend_compensation()?;
         self.active = Some(ActiveCycle { moves, code, at: self.at, lines, passes_before, moves_made: 0 });
         Ok(())
     }
@@ -268,15 +278,17 @@ impl Core {
             depth,
             cycle: Some(CycleOrigin { label: CycleLabel(cycle.code), pass, phase: step.phase }),
         };
-        let mut action = step.action;
+        let action = step.action;
         if let Some(to) = action.end_point() {
             let from = std::mem::replace(&mut self.tip, to);
             self.modal.position = to;
             if self.looks_at_moves {
-                action = self.looked_at(from, action)?;
+                self.follow_plain(to);
+                let nose = self.compensation.is_some().then(|| self.nose());
+                return self.give(from, action, origin, nose);
             }
         }
-        self.out.push_back(Command { action, origin });
+        self.out.push_back(Command::new(action, origin));
         Ok(())
     }
 }

@@ -477,6 +477,7 @@ impl Core {
         if self.untaken.take().is_none() && others.is_none() {
             return Ok(());
         }
+        self.stop_reading_ahead()?;
         let motion = self.modal.motion.get();
         let to = self.modal.position;
         let is_cut = self.modal.motion != FunctionId::RAPID && !motion.repeats && !motion.takes_lead;
@@ -486,7 +487,7 @@ impl Core {
         } else {
             Action::Rapid { to, path: self.rapid_path(), others }
         };
-        self.emit_move(to, action)
+        self.beside_contour(|core| core.emit_move(to, action))
     }
 
     /// Whether a movement is still to be made.

@@ -84,6 +84,7 @@ impl Core {
             && self.thread_blocks == 0
             && self.data_list.is_none()
             && self.corner.is_none()
+            && self.compensation.is_none()
             && self.untaken.is_none()
             && self.macros.modal_calls.is_empty()
             && !(calls.has_preparatory() || calls.has_auxiliary() || calls.has_tools())

@@ -17,6 +17,20 @@ pub(crate) fn place(point: Point) -> Option<Position<WorkTip>> {
     Some(Position::new(Radius(nm(point.x)?), nm(point.z)?))
 }
 
+/// The centre, moved so that both rounded ends lie on one circle. Ends so close together that this would take more
+/// than their rounding leave it where it is.
+pub(crate) fn between_ends(centre: Point, start: Point, end: Point, rounding_mm: f64) -> Point {
+    let (z, x) = (end.z - start.z, end.x - start.x);
+    let chord = z.hypot(x);
+    let middle = Point::new((start.x + end.x) / 2.0, (start.z + end.z) / 2.0);
+    let off = ((centre.z - middle.z) * z + (centre.x - middle.x) * x) / chord;
+    if off.abs() <= rounding_mm {
+        Point::new(centre.x - off * x / chord, centre.z - off * z / chord)
+    } else {
+        centre
+    }
+}
+
 impl Core {
     /// A computed place that the tool is sent to: rounded to the least increment of the words, X as a diameter.
     pub(crate) fn snapped(&self, point: Point) -> Result<Position<WorkTip>, Alarm> {

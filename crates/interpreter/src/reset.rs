@@ -153,6 +153,7 @@ impl Interpreter {
     pub fn reset(&mut self) {
         self.core.out.clear();
         self.core.sync = None;
+        self.core.abandon_compensation();
         let place = self.core.tip;
         self.core.drop_work();
         self.core.reset_modes();

@@ -1,7 +1,8 @@
 //! What happens to a move between the program and the machine, when anything does.
 //!
 //! Mirror and rotation carry it into work coordinates, the stroke checks may refuse it, and before the reference
-//! return, or once rigid tapping is announced, no axis moves. Nearly every program has none of these; one flag keeps them off its way.
+//! return, or once rigid tapping is announced, no axis moves. Nose compensation shifts it first. Nearly every program has none of these;
+//! one flag keeps them off its way.
 //!
 //! Source: stored stroke checks, mirror, rotation and reference return of both families.
 
@@ -17,6 +18,7 @@ impl Core {
         self.looks_at_moves = self.transform.is_on()
             || self.strokes.is_armed(self.modal.stroke_two_is_on)
             || self.settings.cutting_feed_is_barred
+            || self.compensation.is_some()
             || self.lacks_reference()
             || self.modal.awaits_rigid_tap;
     }

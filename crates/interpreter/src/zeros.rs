@@ -346,7 +346,12 @@ impl Core {
         if moved != tip_moved {
             self.owe_movement(moved.x - tip_moved.x, moved.z - tip_moved.z);
         }
-        if tip_in_work != tip_in_new_work {
+        if tip_in_work == tip_in_new_work {
+            return;
+        }
+        if self.compensation.is_some() {
+            self.relocate_compensated(self.tip - tip);
+        } else {
             self.emit(Action::Relocate { to: tip_in_new_work, others: None });
         }
     }

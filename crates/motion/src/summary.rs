@@ -327,7 +327,7 @@ mod tests {
                 origin.cycle =
                     Some(CycleOrigin { label: CycleLabel(*label), pass: *pass, phase: Phase::Cut });
             }
-            let command = Command { action: action.clone(), origin };
+            let command = Command::new(action.clone(), origin);
             let timing = clock.advance(&command);
             summary.add(&command, &timing);
         }

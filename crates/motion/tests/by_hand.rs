@@ -28,7 +28,7 @@ fn clock(diameter: f64, z: f64) -> Clock {
 }
 
 fn run(clock: &mut Clock, action: Action) -> Timing {
-    clock.advance(&Command { action, origin: Origin::line(1) })
+    clock.advance(&Command::new(action, Origin::line(1)))
 }
 
 fn line(clock: &mut Clock, diameter: f64, z: f64, feed: Feed) -> Timing {
@@ -261,10 +261,8 @@ fn what_waits_for_a_standing_spindle_is_counted_not_guessed() {
 #[test]
 fn other_coordinates_without_a_move_take_no_time() {
     let mut clock = clock(40.0, 0.0);
-    clock.advance(&Command {
-        action: Action::Relocate { to: at(50.0, 10.0), others: None },
-        origin: Origin::line(1),
-    });
+    let relocate = Action::Relocate { to: at(50.0, 10.0), others: None };
+    clock.advance(&Command::new(relocate, Origin::line(1)));
     assert_eq!(rapid(&mut clock, 50.0, 10.0, RapidPath::EachAxis).seconds, 0.0);
     assert_eq!(clock.position(), at(50.0, 10.0));
 }

@@ -88,7 +88,7 @@ impl Cut {
 }
 
 fn run(clock: &mut Clock, action: Action) -> Timing {
-    clock.advance(&Command { action, origin: Origin::line(1) })
+    clock.advance(&Command::new(action, Origin::line(1)))
 }
 
 /// Adaptive Simpson over 0 to 1, begun with many panels so that no corner is missed.
@@ -366,7 +366,7 @@ fn nothing_makes_a_time_that_is_no_number() {
         let mut clock = Clock::new(at(10.0, 10.0), rates);
         let mut summary = Summary::new();
         for _ in 0..100 {
-            let command = Command { action: any_action(&mut random), origin: Origin::line(1) };
+            let command = Command::new(any_action(&mut random), Origin::line(1));
             let timing = clock.advance(&command);
             summary.add(&command, &timing);
             let rpm = timing.rpm.map_or([0.0, 0.0], |rpm| [rpm.min, rpm.max]);

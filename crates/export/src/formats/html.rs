@@ -379,7 +379,7 @@ mod tests {
             let cycle = Some(CycleOrigin { label: CycleLabel(711), pass: 3, phase: Phase::Home });
             let origin = Origin { cycle, figure_line: Some(2), ..Origin::line(1) };
             path.add(
-                &Command { action: Action::Rapid { to, path: RapidPath::EachAxis, others: None }, origin },
+                &Command::new(Action::Rapid { to, path: RapidPath::EachAxis, others: None }, origin),
                 0.5,
             );
         }

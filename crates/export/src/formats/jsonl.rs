@@ -6,7 +6,8 @@
 //! place on the virtual axis of polar or cylindrical interpolation (a line of `op` `interpolation` says which). Arcs
 //! in a plane with `y` or `v` name it: `face` (X and the side axis), `flank` or `wall` (Z and the side axis, seen
 //! from either side), with the centre as `cx` or `cz`, and `cs`. `coupling` is another rotation in step with the
-//! spindle; 0 to 0 ends it. Fields stand in a fixed order and
+//! spindle; 0 to 0 ends it. While nose compensation is on, moves also have `nx` and `nz`, the centre of the nose.
+//! Fields stand in a fixed order and
 //! numbers carry no trailing zeros, so that equal runs give equal bytes. A line of another file than the program's
 //! own (a subprogram of the same folder) ends with `file`, the name of that file. Writing a command allocates nothing
 //! but room in the buffer.
@@ -16,7 +17,7 @@ use turnwright_canon::{
     SpindleSpeed, SpindleState,
 };
 use turnwright_units::{
-    Feed, LeastIncrement, Length, Position, WorkTip, write_degrees, write_fixed, write_millimetres,
+    Feed, LeastIncrement, Length, Position, WorkNose, WorkTip, write_degrees, write_fixed, write_millimetres,
 };
 
 /// Decimal places of feeds, leads and seconds, which are finer than any least increment.
@@ -147,6 +148,9 @@ pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
             write_json_string(out, text);
         }
     }
+    if let Some(nose) = &command.nose {
+        write_nose(out, **nose, decimals);
+    }
     write_origin(out, &command.origin);
 }
 
@@ -158,6 +162,13 @@ pub fn write_command_of_file(out: &mut Vec<u8>, command: &Command, decimals: u8,
     if out.len() > before {
         write_file(out, file);
     }
+}
+
+/// The centre of the nose at the end of a move.
+#[cold]
+fn write_nose(out: &mut Vec<u8>, nose: Position<WorkNose>, decimals: u8) {
+    write_length(out, br#","nx":"#, nose.x.to_diameter().0, decimals);
+    write_length(out, br#","nz":"#, nose.z, decimals);
 }
 
 /// Adds the file to the object just written.
@@ -420,7 +431,7 @@ mod tests {
 
     fn line_of(action: Action, origin: Origin) -> String {
         let mut out = Vec::new();
-        write_command(&mut out, &Command { action, origin }, 3);
+        write_command(&mut out, &Command::new(action, origin), 3);
         String::from_utf8(out).expect("JSON is UTF-8")
     }
 
@@ -646,10 +657,10 @@ mod tests {
     #[test]
     fn a_line_of_another_file_names_it_last() {
         let mut out = Vec::new();
-        let command = Command { action: Action::Stop, origin: Origin::line(3) };
+        let command = Command::new(Action::Stop, Origin::line(3));
         write_command_of_file(&mut out, &command, 3, "O2.nc");
         let nowhere = Action::Relocate { to: at(0, 0), others: None };
-        write_command_of_file(&mut out, &Command { action: nowhere, origin: Origin::line(4) }, 3, "O2.nc");
+        write_command_of_file(&mut out, &Command::new(nowhere, Origin::line(4)), 3, "O2.nc");
         assert_eq!(
             String::from_utf8_lossy(&out),
             "{\"op\":\"stop\",\"line\":3,\"depth\":0,\"file\":\"O2.nc\"}\n"
@@ -681,13 +692,13 @@ mod tests {
         let mut out = Vec::new();
         let to = Position::<WorkTip>::new(Radius(Length::from_nm(13_620_710)), Length::from_nm(-2_540));
         let action = Action::Rapid { to, path: RapidPath::Straight, others: None };
-        write_command(&mut out, &Command { action, origin: Origin::line(1) }, 3);
+        write_command(&mut out, &Command::new(action, Origin::line(1)), 3);
         assert!(out.starts_with(br#"{"op":"rapid","x":27.241,"z":-0.003,"#));
         // Both rounded to a hundredth, as the coarsest increment asks for; never "-0".
         out.clear();
         let to = Position::<WorkTip>::new(Radius::ZERO, Length::from_nm(-LeastIncrement::METRIC_C.nm()));
         let action = Action::Rapid { to, path: RapidPath::Straight, others: None };
-        write_command(&mut out, &Command { action, origin: Origin::line(1) }, 2);
+        write_command(&mut out, &Command::new(action, Origin::line(1)), 2);
         assert!(out.starts_with(br#"{"op":"rapid","x":0,"z":0,"#));
     }
 }

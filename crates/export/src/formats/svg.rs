@@ -646,7 +646,7 @@ mod tests {
     fn recorded(actions: Vec<Action>) -> PathRecorder {
         let mut path = PathRecorder::new(at(400.0, 600.0), 5_000.0, 10_000.0);
         for action in actions {
-            path.add(&Command { action, origin: Origin::line(1) }, 1.0);
+            path.add(&Command::new(action, Origin::line(1)), 1.0);
         }
         path
     }

@@ -2,13 +2,13 @@
 
 use turnwright_canon::{Shape, Turn};
 use turnwright_diagnostics::Diagnostic;
-use turnwright_geometry::{Bend, Breaking, Corner, CornerFault, Point, Segment, break_corner};
+use turnwright_geometry::{Bend, Breaking, Corner, CornerFault, Segment, break_corner};
 use turnwright_units::{Length, Position, WorkTip};
 
 use super::words::{CornerWord, Form, Rule};
 use super::{Element, PARALLEL_DEG};
 use crate::machine::Core;
-use crate::plane::{place, point};
+use crate::plane::{between_ends, place, point};
 use crate::report::Alarm;
 
 /// Cuts that meet at less than this are tangent: programmed ends are rounded, and short arcs turn by it.
@@ -64,20 +64,6 @@ impl Element {
 
 fn turn(bend: Bend) -> Turn {
     if bend.clockwise { Turn::Clockwise } else { Turn::CounterClockwise }
-}
-
-/// The centre, moved so that both rounded ends lie on one circle. Ends so close together that this would take more
-/// than their rounding leave it where it is.
-fn between_ends(centre: Point, start: Point, end: Point, rounding_mm: f64) -> Point {
-    let (z, x) = (end.z - start.z, end.x - start.x);
-    let chord = z.hypot(x);
-    let middle = Point::new((start.x + end.x) / 2.0, (start.z + end.z) / 2.0);
-    let off = ((centre.z - middle.z) * z + (centre.x - middle.x) * x) / chord;
-    if off.abs() <= rounding_mm {
-        Point::new(centre.x - off * x / chord, centre.z - off * z / chord)
-    } else {
-        centre
-    }
 }
 
 impl Core {

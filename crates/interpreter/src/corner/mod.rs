@@ -173,6 +173,9 @@ impl Core {
             return Err(self.alarm("drawing-plane-illegal", word));
         }
         let words = self.path_words(block, Some(&motion))?;
+        if let Some(corner) = words.corner.as_ref().filter(|_| self.compensation_changes()) {
+            return Err(self.alarm("corner-in-compensation-start", &corner.word));
+        }
         let element = self.line_element(block, words, motion)?;
         self.add_element(element)
     }
@@ -391,7 +394,9 @@ impl Core {
             }
         }
         (self.at.line, self.at.sequence) = (here, sequence);
-        self.out.extend(first.held.drain(..));
+        for command in first.held.drain(..) {
+            self.pass_on(command);
+        }
         Ok(())
     }
 

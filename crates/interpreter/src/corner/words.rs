@@ -96,7 +96,8 @@ impl Core {
     pub(super) fn path_words(&mut self, block: &Block, motion: Option<&Motion>) -> Result<PathWords, Alarm> {
         let mut found = PathWords::default();
         for word in &block.words {
-            if !word.comma && !LETTERS.contains(&word.address) {
+            let is_wall = matches!(word.address, b'I' | b'K') && self.has_wall_words();
+            if !word.comma && (!LETTERS.contains(&word.address) || is_wall) {
                 continue;
             }
             match self.meaning(word, motion)? {

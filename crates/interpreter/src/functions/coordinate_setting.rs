@@ -44,6 +44,7 @@ fn coordinate_setting(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm>
         return Err(core.alarm_at("unusable-g-code", call.word));
     }
     let there = core.target(call.block)?;
+    core.suspend_compensation()?;
     let here = core.modal.position;
     core.with_new_zero(|core| {
         let zeros = &mut core.zeros;
@@ -77,6 +78,7 @@ fn coordinate_preset(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> 
             return Err(core.alarm("data-out-of-range", word));
         }
     }
+    core.suspend_compensation()?;
     core.with_new_zero(|core| {
         clear(&mut core.zeros.preset, block.present());
         clear(&mut core.zeros.local, block.present());
@@ -100,6 +102,7 @@ fn local_coordinates(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> 
         local.z = if is_increment && adds { local.z + value } else { value };
         core.missing_point(word);
     }
+    core.suspend_compensation()?;
     core.with_new_zero(|core| core.zeros.local = local);
     Ok(())
 }

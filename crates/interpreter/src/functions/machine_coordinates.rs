@@ -54,7 +54,7 @@ fn machine_coordinates(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm
     let ends = core.other_ends_of_machine(block)?;
     core.modal.position = to;
     let others = core.take_along(to, &Shape::Line, ends);
-    core.emit_move(to, Action::Rapid { to, path, others })?;
+    core.without_vector(|core| core.emit_move(to, Action::Rapid { to, path, others }))?;
     let names = |letter| block.word(letter).is_some_and(|word| counts(&word));
     core.leave_out_movement(names(b'X'), names(b'Z'));
     Ok(())

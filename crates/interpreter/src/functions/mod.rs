@@ -24,6 +24,7 @@ mod macro_call;
 mod measuring;
 mod modes;
 pub(crate) mod multi_thread;
+mod nose_compensation;
 mod one_block;
 mod path_mode;
 mod pattern;
@@ -282,7 +283,9 @@ static ALL: &[&Function] = &[
     &dwell::DWELL,
     &modes::INCH,
     &modes::METRIC,
-    &modes::NOSE_COMPENSATION_OFF,
+    &nose_compensation::OFF,
+    &nose_compensation::LEFT,
+    &nose_compensation::RIGHT,
     &modes::WORK_COORDINATES_1,
     &modes::WORK_COORDINATES_2,
     &modes::WORK_COORDINATES_3,

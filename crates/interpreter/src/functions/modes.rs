@@ -1,4 +1,4 @@
-//! Functions that only change a mode: units (G20, G21), nose compensation off (G40), work coordinates (G54 to
+//! Functions that only change a mode: units (G20, G21), work coordinates (G54 to
 //! G59, and G54.1 with the number P), speed mode (G96, G97), feed mode (G98, G99), absolute and incremental (systems B and C).
 //!
 //! Each acts before anything else in its block. A change of feed mode does not convert the F in force; a change
@@ -17,9 +17,6 @@ use crate::zeros::STANDARD_SYSTEMS;
 
 pub(super) static INCH: Function = Function::mode("inch", |core, call| units(core, call, true));
 pub(super) static METRIC: Function = Function::mode("metric", |core, call| units(core, call, false));
-
-pub(super) static NOSE_COMPENSATION_OFF: Function =
-    Function::mode("nose-compensation-off", |_, _| Ok(())).allowed_in_figure().allowed_in_rotation();
 
 pub(super) static WORK_COORDINATES_1: Function =
     Function::mode("work-coordinates-1", |core, _| work(core, 0));
@@ -80,6 +77,7 @@ fn units(core: &mut Core, call: &mut Call<'_>, is_inch: bool) -> Result<(), Alar
 }
 
 fn work(core: &mut Core, system: usize) -> Result<(), Alarm> {
+    core.suspend_compensation()?;
     core.with_new_zero(|core| core.modal.work = system);
     Ok(())
 }

@@ -26,9 +26,6 @@ pub(super) static PLANE_ZX: Function =
 pub(super) static PLANE_YZ: Function =
     Function::mode("plane-yz", |core, call| plane(core, call, Plane::Yz)).allowed_in_rotation();
 
-/// The modal group of nose compensation.
-const COMPENSATION: usize = 7;
-
 fn plane(core: &mut Core, call: &mut Call<'_>, plane: Plane) -> Result<(), Alarm> {
     if plane != core.axes.plane && core.is_compensating() {
         return Err(core.alarm_at("plane-change-in-compensation", call.word));
@@ -41,12 +38,6 @@ fn plane(core: &mut Core, call: &mut Call<'_>, plane: Plane) -> Result<(), Alarm
 }
 
 impl Core {
-    /// Nose compensation is on: its group holds another code than at power-on.
-    pub(crate) fn is_compensating(&self) -> bool {
-        let in_force = self.modal.in_force.codes[COMPENSATION];
-        in_force.is_some() && in_force != self.dispatch.codes_at_power_on[COMPENSATION]
-    }
-
     /// Turning cycles outside the turning plane.
     #[cold]
     pub(crate) fn refuse_cycle_plane(&self, block: &Block, function: &Function) -> Result<(), Alarm> {

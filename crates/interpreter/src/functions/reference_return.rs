@@ -101,8 +101,10 @@ fn reference_leave(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
         b: ends.b.and(passed.b),
         ..OtherAxes::default()
     };
-    core.rapid_each_axis_with(by_way_of, others_by_way_of)?;
-    core.rapid_each_axis_with(to, ends)
+    core.without_vector(|core| {
+        core.rapid_each_axis_with(by_way_of, others_by_way_of)?;
+        core.rapid_each_axis_with(to, ends)
+    })
 }
 
 fn reference_check(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
@@ -114,7 +116,7 @@ fn reference_check(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     }
     let to = core.target(call.block)?;
     let ends = core.other_ends(call.block)?;
-    core.rapid_each_axis_with(to, ends)?;
+    core.without_vector(|core| core.rapid_each_axis_with(to, ends))?;
     let (there, home) = (core.machine_position(), core.zeros.reference[0]);
     for (axis, is_there) in [(CROSS, there.x == home.x), (ALONG, there.z == home.z)] {
         if present & axis != 0 && !is_there {
@@ -163,8 +165,10 @@ impl Core {
             b: others_by_way_of.b.or(before.b),
             ..OtherAxes::default()
         };
-        self.rapid_each_axis_with(by_way_of, others_by_way_of)?;
-        self.rapid_each_axis_with(home, others_home)?;
+        self.without_vector(|core| {
+            core.rapid_each_axis_with(by_way_of, others_by_way_of)?;
+            core.rapid_each_axis_with(home, others_home)
+        })?;
         self.leave_out_movement(present & CROSS != 0, present & ALONG != 0);
         if number == 0 {
             self.clear_shifts_at_home(present);

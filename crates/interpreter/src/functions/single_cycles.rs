@@ -57,6 +57,7 @@ fn box_cycle(core: &mut Core, call: &mut Call<'_>, first: cycles::FirstAxis) -> 
     core.check_spindle();
     let taper = core.modal.cycle.taper;
     core.check_taper(call, first, end, taper)?;
+    let end = core.beside_taper(call, first, end, taper)?;
     let request = cycles::BoxRequest { context: core.cycle_context(feed), first, end, taper };
     let cycle = cycles::box_cycle(request).map_err(|fault| core.misuse(fault, call))?;
     let passes_before = core.count_single_cycle(1);

@@ -374,6 +374,7 @@ impl Core {
                 let text = self.comment();
                 self.emit(Action::Message(text.into_boxed_str()));
                 self.emit(Action::Stop);
+                self.stop_reading_ahead()?;
                 self.sync = Some(SyncReason::CycleStart);
             }
             1000..=1033 | 3007 | 3011 | 3012 | 4001..=4130 | 5001..=5128 => return Ok(Written::ReadOnly),
