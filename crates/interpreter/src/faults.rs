@@ -65,8 +65,13 @@ impl Core {
     fn numbered_word<'b>(&self, block: &'b Block, fault: &Fault) -> Option<&'b Word> {
         let is_equals = self.text.bytes(&self.line).get(fault.start as usize) == Some(&b'=');
         let word = block.words.iter().rfind(|word| word.end <= fault.start)?;
+        let is_of_spindle = matches!(word.address, b'S' | b'M');
         let has_number = matches!(word.value, Value::Number(number) if number.scale == 0);
-        (fault.kind == FaultKind::NotAWord && is_equals && word.end == fault.start && has_number)
+        (fault.kind == FaultKind::NotAWord
+            && is_equals
+            && is_of_spindle
+            && word.end == fault.start
+            && has_number)
             .then_some(word)
     }
 
