@@ -166,7 +166,13 @@ pub fn hole(request: HoleRequest) -> Result<Hole, Misuse> {
     let pecks = if depth.is_zero() || total == 0 { 1 } else { (total.abs() - 1) / depth.nm() + 1 };
     let next = if request.repeats == 0 { Next::Done } else { Next::Place };
     let tool = Tool::new(start);
-    Ok(Hole { peck: depth.nm() * total.signum(), request, plane, tool, total, pecks, hole: 1, next })
+    let peck = depth.nm() * total.signum();
+    let mut hole = Hole { peck, request, plane, tool, total, pecks, hole: 1, next };
+    if hole.at_depth(0) == hole.at_depth(total) && hole.request.step.is_zero() {
+        // A hole of no depth in one place: once is enough, and a great many times would take for ever.
+        hole.request.repeats = hole.request.repeats.min(1);
+    }
+    Ok(hole)
 }
 
 impl HoleRequest {

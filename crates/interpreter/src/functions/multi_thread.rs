@@ -363,13 +363,18 @@ impl Core {
             // The crest lies further out than the start: the first infeed would lead away from the work.
             self.warn_block("thread-start-inside");
         }
-        // Whether the way from the start to the face is long enough is known only where Z0 is the face.
         let flank_mm = words.height.to_mm() * libm::tan(f64::from(words.nose_angle_deg).to_radians() / 2.0);
-        let is_from_face = start.z.signum() >= 0 && end.z.signum() < 0;
-        if is_from_face && start.z.to_mm() - flank_mm < LEAD_IN_LEADS * lead.0.to_mm() {
+        self.check_lead_in(end, lead, flank_mm);
+        Ok(())
+    }
+
+    /// Whether the way from the start to the face is long enough is known only where Z0 is the face.
+    pub(super) fn check_lead_in(&mut self, end: Position<WorkTip>, lead: Lead, flank_mm: f64) {
+        let start = self.modal.position.z;
+        let is_from_face = start.signum() >= 0 && end.z.signum() < 0;
+        if is_from_face && start.to_mm() - flank_mm < LEAD_IN_LEADS * lead.0.to_mm() {
             self.warn_block("thread-lead-in-short");
         }
-        Ok(())
     }
 }
 

@@ -81,6 +81,9 @@ fn thread_cycle(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     core.check_thread(call, lead)?;
     let taper = core.modal.cycle.taper;
     core.check_taper(call, first, end, taper)?;
+    if !is_face && call.word.is_some() {
+        core.check_lead_in(end, lead, 0.0);
+    }
     let (run_out, run_out_depth) = core.cycle_run_out(call, lead, end)?;
     let request = cycles::ThreadOnceRequest {
         context: core.cycle_context(Feed::PerRevolution(FeedPerRevolution(lead.0))),
