@@ -148,8 +148,10 @@ fn holes_are_cut_in_bites_and_never_passed_at_rapid() {
     }
 }
 
-/// The places of a hole's moves as (along, across), and what the others do.
-fn told(asked: HoleRequest) -> Vec<(Phase, Option<(i64, i64)>, u32)> {
+/// What a step is for, where it ends as (along, across) when it moves, and its hole.
+type Told = (Phase, Option<(i64, i64)>, u32);
+
+fn told(asked: HoleRequest) -> Vec<Told> {
     let axis = asked.axis;
     let place = |step: &CycleMove| {
         step.action.end_point().map(|to| match axis {
@@ -196,7 +198,7 @@ fn mirrored_and_shifted_holes_have_mirrored_and_shifted_moves() {
             ..asked.clone()
         };
         let plain = told(asked.clone());
-        let carried = |carry: &dyn Fn(i64) -> i64| -> Vec<_> {
+        let carried = |carry: &dyn Fn(i64) -> i64| -> Vec<Told> {
             plain.iter().map(|(phase, to, pass)| (*phase, to.map(|(u, v)| (carry(u), v)), *pass)).collect()
         };
         assert_eq!(told(change(mirrored, &|length| -length)), carried(&|u| -u));

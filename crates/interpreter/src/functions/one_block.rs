@@ -11,11 +11,14 @@
 //!
 //! In the roughing cycles I and K are the allowance that a pass along the figure takes before G70: the rough passes
 //! leave it beside U and W, then the tool goes from the start point along the figure, whatever 5105#1 says. R, where
-//! the form was only recognised, is the escape; it needs its point, as `R1` chooses the type on Haas.
+//! the form was only recognised, is the escape; it needs its point, as `R1` chooses the type on Haas. Figures from
+//! there end with a rapid move back to the start (`N20 G00 G40 Z0.1`), where a figure may not turn back: roughing
+//! leaves it out where the form was only recognised.
 //!
 //! Source: cycles of both families, chapters 1.2, 10 and 13.
 
 use turnwright_control::policy::CycleForm;
+use turnwright_cycles as cycles;
 use turnwright_syntax::{Block, Word};
 use turnwright_units::{Length, Radius};
 
@@ -87,6 +90,17 @@ impl Core {
             return Err(self.alarm_at("cut-depth-illegal", call.word));
         }
         Ok(RoughWords { depth, escape, semi_finish })
+    }
+
+    /// Leaves out rapid moves at the end of a figure that lead back along the cut.
+    pub(super) fn leave_out_return(&self, figure: &mut cycles::Figure, along: cycles::CutAlong) {
+        let tolerance = self.monotony_tolerance();
+        while let Some(fault) = cycles::turn_back_fault(figure, along, tolerance)
+            && fault.element as usize + 1 == figure.elements.len()
+            && figure.elements.last().is_some_and(|last| last.motion == cycles::FigureMotion::Rapid)
+        {
+            figure.elements.pop();
+        }
     }
 
     /// D as a length: least increments without a point.

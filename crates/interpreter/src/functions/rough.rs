@@ -108,8 +108,11 @@ impl Core {
             return Err(self.alarm_at("feed-missing", call.word));
         };
         self.check_spindle();
-        let captured = self.capture_figure(call)?;
+        let mut captured = self.capture_figure(call)?;
         self.remember_range(&captured);
+        if form == Form::OneBlockRecognised {
+            self.leave_out_return(&mut captured.figure, along);
+        }
         let kind = self.rough_type(&captured, along)?;
         self.check_figure(&captured, kind, along, (allowance_x, allowance_z), call)?;
         let policies = &self.control.policies;
