@@ -169,7 +169,8 @@ fn holes(core: &mut Core, call: &mut Call<'_>, axis: PeckAxis, work: Work) -> Re
     let Some(mut hole) = core.modal.hole else { return Ok(()) };
     let axes = super::AXES | (core.axes.letters & !letters(b"J"));
     if call.block.present() & axes == 0 {
-        if let Some(word) = DATA.iter().find_map(|letter| call.block.word(*letter)) {
+        let data = |letter: &u8| call.block.word(*letter).filter(|word| !core.selects_spindle(word));
+        if let Some(word) = DATA.iter().find_map(data) {
             core.warn("hole-words-without-hole", word);
         }
         return Ok(());
