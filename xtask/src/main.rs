@@ -10,7 +10,8 @@ cargo xtask tidy   the rules of the house, also a test of its own
 
 Environment of `test`:
   TURNWRIGHT_TEST_ARGS        arguments for `cargo test` instead of --workspace; `none` leaves it out
-  TURNWRIGHT_REQUIRE_BROWSER  1: a missing browser is a failure, not a skip";
+  TURNWRIGHT_REQUIRE_BROWSER  1: a missing browser is a failure, not a skip
+  TURNWRIGHT_WITHOUT_RS274    1: leaves out what is compared with LinuxCNC's interpreter";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

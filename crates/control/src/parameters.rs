@@ -44,8 +44,6 @@ pub enum Acts {
     Live,
     /// The machine file says it.
     MachineFile,
-    /// Once nose compensation is executed.
-    NoseCompensation,
     /// Once the hole cycles and the further words of the multiple cycles are executed.
     Cycles,
 }

@@ -335,6 +335,17 @@ policies! {
         /// Refused.
         Alarm,
     }
+    /// What nose compensation does to the figure of a roughing cycle.
+    roughing_compensation: RoughingCompensation {
+        /// Nothing: the figure is roughed as it is written.
+        None,
+        /// In force before the cycle, it shifts the figure first.
+        BeforeCycle,
+        /// Named in the figure, it shifts it when the parameter says so.
+        ByParameter,
+        /// Named in the figure's first block, it shifts the figure.
+        InFirstBlock,
+    }
     /// A subprogram call in nose compensation.
     call_in_compensation: CallInCompensation {
         /// The path goes on in the subprogram.

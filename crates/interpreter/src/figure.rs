@@ -54,6 +54,13 @@ impl Core {
             || matches!(self.frames.last().map(|frame| &frame.kind), Some(FrameKind::Finish { .. }))
     }
 
+    /// The block in work is the first of the figure being read.
+    pub(crate) fn is_first_of_figure(&self) -> bool {
+        self.capture.as_ref().is_some_and(|capture| {
+            capture.elements.is_empty() && self.at.sequence == Some(capture.range.first)
+        })
+    }
+
     fn figure_range(&self) -> Option<FigureRange> {
         match (&self.capture, self.frames.last().map(|frame| &frame.kind)) {
             (Some(capture), _) => Some(capture.range),
@@ -169,6 +176,7 @@ impl Core {
     /// Reads the figure that P and Q of a cycle block name.
     pub(crate) fn capture_figure(&mut self, call: &mut Call<'_>) -> Result<Captured, Alarm> {
         self.refuse_in_mdi("cycle-not-in-memory", call.word)?;
+        self.refuse_compensated_figure(call)?;
         let range = self.range_words(call)?;
         let (first, _) = self.find_range(&range, call)?;
         let is_adjacent = self.look_between(first, &range, call)?;

@@ -569,6 +569,10 @@ impl Core {
     /// After a block: counts those without a move while one waits.
     #[cold]
     pub(crate) fn check_compensation(&mut self, is_counted: bool) -> Result<(), Alarm> {
+        if self.sync.is_some() {
+            // The control does not read on.
+            self.stop_reading_ahead()?;
+        }
         let gap_max = self.control.limits.compensation_gap_max.min(HELD_BLOCKS_MAX);
         let Some(path) = &mut self.compensation else { return Ok(()) };
         path.has_wall_words = false;

@@ -9,6 +9,12 @@ use turnwright_geometry::{Joints, StartUp};
 pub(crate) struct CompensationSettings {
     /// G41 and G42 act.
     pub(crate) is_available: bool,
+    /// G41 and G42 are refused in programs typed in at the panel.
+    pub(crate) refused_in_mdi: bool,
+    /// G40 to G42 may stand in the figure of a roughing cycle.
+    pub(crate) allowed_in_figure: bool,
+    /// Compensation of the figure acts in roughing.
+    pub(crate) roughs_compensated: bool,
     /// How moves lead onto the path and off it.
     pub(crate) start_up: StartUp,
     /// A code alone moves the nose to the path or off it.
@@ -35,6 +41,9 @@ impl CompensationSettings {
         let both = type_c && policies.start_up_type_c == StartUpTypeC::BothSquare;
         Self {
             is_available: bit("compensation-available"),
+            refused_in_mdi: bit("compensation-in-mdi-alarm"),
+            allowed_in_figure: bit("compensation-codes-in-figure"),
+            roughs_compensated: bit("roughing-with-compensation"),
             start_up: match (both, along) {
                 (true, _) => StartUp::BothSquare,
                 (false, true) => StartUp::AlongPath,
