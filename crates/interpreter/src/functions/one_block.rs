@@ -13,7 +13,8 @@
 //! leave it beside U and W, then the tool goes from the start point along the figure, whatever 5105#1 says. R, where
 //! the form was only recognised, is the escape; it needs its point, as `R1` chooses the type on Haas. Figures from
 //! there end with a rapid move back to the start (`N20 G00 G40 Z0.1`), where a figure may not turn back: roughing
-//! leaves it out where the form was only recognised.
+//! leaves it out where the form was only recognised. A template whose figure is still empty is said there and roughs
+//! nothing.
 //!
 //! Source: cycles of both families, chapters 1.2, 10 and 13.
 

@@ -157,8 +157,15 @@ impl Core {
                     .map(|cycle| CycleMoves::SemiFinishedPockets(Box::new(cycle)))
             }
         };
-        let moves = moves.map_err(|fault| self.misuse(fault, call))?;
-        self.start_cycle(moves, call.code, lines, 0)?;
+        match moves {
+            Err(cycles::Misuse::NoContour) if form == Form::OneBlockRecognised => {
+                self.warn_block("empty-figure");
+            }
+            moves => {
+                let moves = moves.map_err(|fault| self.misuse(fault, call))?;
+                self.start_cycle(moves, call.code, lines, 0)?;
+            }
+        }
         self.go(behind, call.environment)
     }
 
