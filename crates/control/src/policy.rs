@@ -448,6 +448,13 @@ policies! {
         /// Least increments or millimetres, as the unit parameter says; a point is taken in millimetres only.
         ByUnitParameter,
     }
+    /// A negative relief of a grooving cycle where the direction is fixed.
+    groove_relief_sign: GrooveReliefSign {
+        /// An alarm.
+        Refused,
+        /// Only the amount counts.
+        Ignored,
+    }
     /// Direction of the relief at the bottom of a single groove.
     groove_relief_alone: GrooveReliefAlone {
         /// The sign of the relief.

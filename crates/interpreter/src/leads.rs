@@ -90,15 +90,21 @@ impl Core {
         }
     }
 
-    /// The change of lead in a revolution, with its sign.
+    /// The change of lead in a revolution, with its sign: as large as a lead may be, or none.
     pub(crate) fn lead_change(&mut self, word: &Word) -> Result<Length, Alarm> {
-        self.fine_lead(word)
+        let change = self.fine_lead(word)?;
+        if change.is_zero() || self.is_lead_in_range(Lead(change.abs())) {
+            Ok(change)
+        } else {
+            Err(self.alarm("lead-illegal", word))
+        }
     }
 
     /// A lead in its own increments: those are what it counts without a point.
     fn fine_lead(&mut self, word: &Word) -> Result<Length, Alarm> {
-        let number = self.number(word)?;
         let decimals: u8 = if self.modal.is_inch { 6 } else { 4 };
+        let number = self.number(word)?;
+        let number = if number.is_computed() { number.rounded(decimals) } else { number };
         let unit = if self.modal.is_inch { INCH_NM } else { 1_000_000 };
         self.check_lead(word);
         if number.scale > decimals {

@@ -34,7 +34,6 @@ pub(crate) struct SingleCycle {
     pub(crate) x: Option<Radius>,
     pub(crate) z: Option<Length>,
     pub(crate) taper: Length,
-    pub(crate) start_angle_millidegrees: i64,
     /// J and K of a thread: run-out across and along.
     pub(crate) run_out_depth: Option<Length>,
     pub(crate) run_out_length: Option<Length>,

@@ -89,6 +89,16 @@ fn our_own_numbers_are_given_once() {
 }
 
 #[test]
+fn whatever_a_program_raises_has_a_number_everywhere() {
+    let messages = Messages::load();
+    for key in messages.keys().filter(|key| messages.raised_by(key).is_none()) {
+        for ids in [AlarmIds::Three, AlarmIds::Four, AlarmIds::Named] {
+            assert!(messages.id(key, ids).is_some(), "{key} has no number where controls have {ids:?}");
+        }
+    }
+}
+
+#[test]
 fn a_number_of_a_control_is_that_of_its_family() {
     let messages = Messages::load();
     let digits = |id: &str| id.bytes().all(|byte| byte.is_ascii_digit());

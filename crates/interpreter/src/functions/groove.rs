@@ -10,7 +10,7 @@
 //!
 //! Source: face and radial peck cycles of both families.
 
-use turnwright_control::policy::{CycleIntegerWords, GrooveReliefAlone, GrooveWords as GrooveWordsAre};
+use turnwright_control::policy::{GrooveReliefAlone, GrooveReliefSign, GrooveWords as GrooveWordsAre};
 use turnwright_cycles as cycles;
 use turnwright_syntax::Word;
 use turnwright_units::{Length, Position};
@@ -137,7 +137,7 @@ impl Core {
 
     /// Some controls take only the amount of a relief whose direction is fixed.
     fn relief(&self, relief: Length, shifts: bool) -> Length {
-        let takes_amount = self.control.policies.cycle_integer_words == CycleIntegerWords::ByUnitParameter;
+        let takes_amount = self.control.policies.groove_relief_sign == GrooveReliefSign::Ignored;
         if shifts && takes_amount { relief.abs() } else { relief }
     }
 }

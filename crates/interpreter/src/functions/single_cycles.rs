@@ -9,17 +9,17 @@
 //! The words of the lead, and Q for the start angle, are those of single threads (`leads.rs`). On controls with the
 //! words: J and K are the run-out across and along instead of the parameters (J zero: none; K alone is as deep as
 //! long; J alone by policy as long as deep, or straight out at the end), L the number of starts, each a pass with its
-//! share of the turn, P1 a thread across the face. They stay in force like X and Z. The way out of a thread is at
-//! rapid, or at the speed set for it (1466).
+//! share of the turn, P1 a thread across the face. They stay in force like X and Z; Q does not. The way out of a
+//! thread is at rapid, or at the speed set for it (1466).
 //!
 //! X, Z and R stay in force while the code does: a block with a new X repeats the cycle from the same start
-//! point. A code of its own without any axis word only takes effect with the next axis word.
+//! point, one with `U0` or `W0` repeats it as it was. A code of its own without any axis word only takes effect with the next axis word.
 //!
 //! Source: single canned cycles of both families.
 
 use turnwright_control::policy::{RunOutWords, TaperSign, ThreadCycleWords};
 use turnwright_cycles as cycles;
-use turnwright_units::{Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position};
+use turnwright_units::{Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position};
 
 use super::multi_thread::{self, run_out};
 use super::{Function, letters};
@@ -75,9 +75,7 @@ fn thread_cycle(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     let first = if is_face { cycles::FirstAxis::Z } else { cycles::FirstAxis::X };
     let end = core.single_cycle_words(call, !is_face)?;
     let lead = core.lead_in_force(call)?;
-    if call.block.has(b'Q') {
-        core.modal.cycle.start_angle_millidegrees = core.start_angle(call)?.millidegrees();
-    }
+    let start_angle = core.start_angle(call)?;
     core.check_thread(call, lead)?;
     let taper = core.modal.cycle.taper;
     core.check_taper(call, first, end, taper)?;
@@ -91,7 +89,7 @@ fn thread_cycle(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
         end,
         taper,
         lead,
-        start_angle: Angle::from_millidegrees(core.modal.cycle.start_angle_millidegrees),
+        start_angle,
         starts: core.modal.cycle.starts,
         run_out,
         run_out_angle_deg: core.settings.run_out_angle_deg,
@@ -120,12 +118,16 @@ impl Core {
     ) -> Result<Position<turnwright_units::WorkTip>, Alarm> {
         let present = call.block.present();
         if present & super::AXES != 0 {
-            let to = self.target(call.block)?;
-            if present & letters(b"XU") != 0 {
-                self.modal.cycle.x = Some(to.x);
+            let (to, here) = (self.target(call.block)?, self.modal.position);
+            // An increment of zero moves nowhere: the cycle runs again as it is.
+            let increments = if self.modal.is_incremental { super::AXES } else { letters(b"UW") };
+            let cycle = &mut self.modal.cycle;
+            let stays = |letter, held: bool| held && present & letters(letter) & !increments == 0;
+            if present & letters(b"XU") != 0 && !(to.x == here.x && stays(b"XU", cycle.x.is_some())) {
+                cycle.x = Some(to.x);
             }
-            if present & letters(b"ZW") != 0 {
-                self.modal.cycle.z = Some(to.z);
+            if present & letters(b"ZW") != 0 && !(to.z == here.z && stays(b"ZW", cycle.z.is_some())) {
+                cycle.z = Some(to.z);
             }
         }
         if let Some(word) = call.block.word(b'R') {
@@ -167,16 +169,18 @@ impl Core {
         cycle.run_out_length = along.or(cycle.run_out_length);
         let words = multi_thread::RunOutWords { depth: cycle.run_out_depth, length: cycle.run_out_length };
         let is_face_thread = cycle.is_face_thread;
-        let Some((along, depth)) = self.run_out_by_words(words) else {
-            return Ok((run_out(lead, self.settings.run_out_tenths), None));
+        let (along, depth) = match self.run_out_by_words(words) {
+            Some((along, depth)) => (along, Some(depth)),
+            None => (run_out(lead, self.settings.run_out_tenths), None),
         };
         let way = end - self.modal.position;
         let thread = if is_face_thread { way.x.0 } else { way.z };
-        if along > thread.abs() {
+        let has_words = self.control.policies.run_out_words != RunOutWords::Absent;
+        if has_words && along > thread.abs() {
             let word = call.block.word(b'K').or(call.block.word(b'J')).or(call.word);
             return Err(self.alarm_at("run-out-too-long", word));
         }
-        Ok((along, Some(depth)))
+        Ok((along, depth))
     }
 
     /// Length and depth of the run-out that J and K ask for.

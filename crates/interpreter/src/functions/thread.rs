@@ -21,10 +21,12 @@
 //!
 //! Source: thread cutting with constant and variable lead, both families.
 
-use turnwright_canon::{Action, RapidPath, Shape, SpindleState};
+use turnwright_canon::{Action, Shape, SpindleState};
 use turnwright_control::policy::{RunOutBase, RunOutWords, VariableLeadStartAngle};
 use turnwright_diagnostics::Diagnostic;
-use turnwright_units::{Angle, Feed, FeedPerMinute, Lead, LeastIncrement, Length, Position, Radius, WorkTip};
+use turnwright_units::{
+    Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, LeastIncrement, Length, Position, Radius, WorkTip,
+};
 
 use super::Function;
 use crate::block::Call;
@@ -176,7 +178,7 @@ impl Core {
         self.emit_move(leave, thread(leave, lead, lead_leaving, is_chained))?;
         self.modal.position = end;
         if along.is_zero() {
-            self.emit_pull_out(end)?;
+            self.emit_pull_out(end, lead_behind(long).unwrap_or(lead))?;
         } else {
             // The lead counts along the longer axis of the run-out, so that the long axis keeps its pace.
             let steep = (across.abs().to_mm() / along.to_mm()).max(1.0);
@@ -191,15 +193,13 @@ impl Core {
         Ok(())
     }
 
-    /// Straight out of a thread, at the speed set for it.
-    fn emit_pull_out(&mut self, to: Position<WorkTip>) -> Result<(), Alarm> {
-        match self.settings.thread_pull_out_feed {
-            Some(feed) => {
-                let feed = Feed::PerMinute(FeedPerMinute(feed));
-                self.emit_move(to, Action::Feed { to, shape: Shape::Line, feed, others: None })
-            }
-            None => self.emit_move(to, Action::Rapid { to, path: RapidPath::EachAxis, others: None }),
-        }
+    /// Straight out of a thread, at the speed set for it or else that of the thread.
+    fn emit_pull_out(&mut self, to: Position<WorkTip>, lead: Lead) -> Result<(), Alarm> {
+        let feed = match self.settings.thread_pull_out_feed {
+            Some(feed) => Feed::PerMinute(FeedPerMinute(feed)),
+            None => Feed::PerRevolution(FeedPerRevolution(lead.0)),
+        };
+        self.emit_move(to, Action::Feed { to, shape: Shape::Line, feed, others: None })
     }
 
     /// J and K; `None` when there is no run-out.
