@@ -176,16 +176,21 @@ impl Core {
     /// Reads the figure that P and Q of a cycle block name.
     pub(crate) fn capture_figure(&mut self, call: &mut Call<'_>) -> Result<Captured, Alarm> {
         self.refuse_in_mdi("cycle-not-in-memory", call.word)?;
-        self.refuse_compensated_figure(call)?;
         let range = self.range_words(call)?;
         let (first, _) = self.find_range(&range, call)?;
         let is_adjacent = self.look_between(first, &range, call)?;
         let here = self.resume();
         let cycle_line = self.line_cursor();
         let (modal, at, tip) = (self.modal.clone(), self.at, self.tip);
+        // Compensation in force waits outside of the figure; it shifts the figure only where the control does that.
+        let compensation = self.compensation.take();
         self.capture = Some(Capture { elements: Vec::new(), curve_pieces: 0, range });
+        self.compensate_figure(compensation.as_deref());
         self.go(first, call.environment)?;
         let read = self.read_figure(range, call);
+        let read = read.and_then(|first| self.stop_reading_ahead().map(|()| first));
+        self.compensation = compensation;
+        self.look_at_moves();
         let behind = self.resume();
         let capture = self.capture.take();
         (self.modal, self.at, self.tip) = (modal, at, tip);

@@ -149,7 +149,7 @@ impl Core {
     #[inline]
     pub(crate) fn emit_move(&mut self, to: Position<WorkTip>, action: Action) -> Result<(), Alarm> {
         if self.capture.is_some() {
-            return self.capture_move(to, &action);
+            return self.capture_any(to, action);
         }
         if self.untaken.is_some() {
             return self.emit_move_short(to, action);
@@ -175,7 +175,17 @@ impl Core {
         }
     }
 
-    fn capture_move(&mut self, to: Position<WorkTip>, action: &Action) -> Result<(), Alarm> {
+    /// A move of the figure, shifted by nose compensation where that acts in roughing.
+    fn capture_any(&mut self, to: Position<WorkTip>, action: Action) -> Result<(), Alarm> {
+        if self.compensation.is_none() {
+            return self.capture_move(to, &action);
+        }
+        let goes = to != self.tip || is_move_of_its_own(&action);
+        let from = std::mem::replace(&mut self.tip, to);
+        if goes { self.compensate(from, action) } else { Ok(()) }
+    }
+
+    pub(crate) fn capture_move(&mut self, to: Position<WorkTip>, action: &Action) -> Result<(), Alarm> {
         let motion = match action {
             Action::Rapid { .. } => FigureMotion::Rapid,
             Action::Feed { shape: Shape::Line, .. } => FigureMotion::Line,

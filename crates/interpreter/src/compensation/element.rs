@@ -202,6 +202,15 @@ impl Core {
         origin: Origin,
         nose: Option<Nose>,
     ) -> Result<(), Alarm> {
+        if self.is_capturing()
+            && let Some(to) = action.end_point()
+        {
+            // The contour runs ahead of what the figure is made of.
+            let tip = self.tip;
+            let captured = self.capture_move(to, &action);
+            self.tip = tip;
+            return captured;
+        }
         let centre = nose.zip(action.end_point()).map(|(nose, tip)| nose.centre(tip));
         let action = self.looked_at(from, action)?;
         let nose = centre.map(|centre| {

@@ -28,7 +28,7 @@ mod settings;
 mod single_cycle;
 
 use turnwright_canon::{Action, Command, Origin, Shape};
-use turnwright_control::policy::CompensationGap;
+use turnwright_control::policy::{CompensationGap, RoughingCompensation};
 use turnwright_diagnostics::Diagnostic;
 use turnwright_geometry::{Joint, Offset, Segment, Side, Vector};
 use turnwright_units::{Displacement, Position, WorkTip};
@@ -143,6 +143,14 @@ impl Core {
         path.side = Some(side);
         path.is_code_block = true;
         self.look_at_moves();
+    }
+
+    /// Before a figure is read: compensation in force before a roughing cycle shifts it on some controls.
+    pub(crate) fn compensate_figure(&mut self, in_force: Option<&Compensation>) {
+        let shifts = self.control.policies.roughing_compensation == RoughingCompensation::BeforeCycle;
+        if let Some(side) = in_force.and_then(|path| path.side).filter(|_| shifts) {
+            self.compensate_on(side);
+        }
     }
 
     /// G40, perhaps with the direction of a wall.

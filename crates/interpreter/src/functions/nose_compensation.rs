@@ -9,15 +9,15 @@
 //! `G40`: the next straight move leads off the path, to the programmed point. `G40 X_ Z_ I_ K_` names the direction of
 //! a wall, I as a radius: the path is left where it meets the wall. Program end and reset cancel without a move.
 //!
+//! In the figure of a roughing cycle the codes act where a policy says so, else only when it is finished.
+//!
 //! A radius below zero exchanges the sides, or is refused, by policy. Compensation works in the turning plane.
 //! What happens at corners, and the interference check, is in `compensation/`.
 //!
 //! Source: tool nose radius compensation of both families.
 
 use turnwright_control::policy::{NegativeNoseRadius, RoughingCompensation};
-use turnwright_diagnostics::Diagnostic;
 use turnwright_geometry::{Side, Vector};
-use turnwright_syntax::Word;
 
 use super::Function;
 use crate::axes::Plane;
@@ -41,8 +41,8 @@ fn start(core: &mut Core, call: &mut Call<'_>, side: Side) -> Result<(), Alarm> 
     if core.settings.compensation.refused_in_mdi {
         core.refuse_in_mdi("compensation-in-mdi", call.word)?;
     }
-    if core.is_capturing() {
-        return core.code_in_roughed_figure(call);
+    if core.is_capturing() && !core.acts_in_roughed_figure(call)? {
+        return Ok(());
     }
     if let Some(word) = call.word
         && (core.axes.is_virtual() || core.axes.plane != Plane::Zx)
@@ -68,8 +68,8 @@ fn start(core: &mut Core, call: &mut Call<'_>, side: Side) -> Result<(), Alarm> 
 }
 
 fn end(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
-    if core.is_capturing() {
-        return core.code_in_roughed_figure(call);
+    if core.is_capturing() && !core.acts_in_roughed_figure(call)? {
+        return Ok(());
     }
     if core.compensation.is_none() {
         return Ok(());
@@ -91,36 +91,19 @@ impl Core {
         in_force.is_some() && in_force != self.dispatch.codes_at_power_on[GROUP]
     }
 
-    /// A code of compensation in a figure that is roughed: without effect, refused by parameter, or, where it would
-    /// shift the figure, refused by name.
+    /// Whether a code of compensation acts in a figure that is roughed; by parameter it is refused there.
     #[cold]
-    fn code_in_roughed_figure(&self, call: &Call<'_>) -> Result<(), Alarm> {
-        let Some(word) = call.word else { return Ok(()) };
-        if !self.settings.compensation.allowed_in_figure {
+    fn acts_in_roughed_figure(&self, call: &Call<'_>) -> Result<bool, Alarm> {
+        if let Some(word) = call.word
+            && !self.settings.compensation.allowed_in_figure
+        {
             return Err(self.refuse_in_figure(word));
         }
-        let shifts = match self.control.policies.roughing_compensation {
+        Ok(match self.control.policies.roughing_compensation {
             RoughingCompensation::None | RoughingCompensation::BeforeCycle => false,
             RoughingCompensation::ByParameter => self.settings.compensation.roughs_compensated,
             RoughingCompensation::InFirstBlock => self.is_first_of_figure(),
-        };
-        if shifts { Err(self.compensated_roughing(word)) } else { Ok(()) }
-    }
-
-    /// Roughing a figure that compensation in force would shift is refused by name.
-    #[cold]
-    pub(crate) fn refuse_compensated_figure(&self, call: &Call<'_>) -> Result<(), Alarm> {
-        let shifts = self.control.policies.roughing_compensation == RoughingCompensation::BeforeCycle;
-        match call.word {
-            Some(word) if shifts && self.is_compensating() => Err(self.compensated_roughing(word)),
-            _ => Ok(()),
-        }
-    }
-
-    fn compensated_roughing(&self, word: &Word) -> Alarm {
-        let quote = self.quote(word.start, word.end);
-        let diagnostic = Diagnostic::error("compensated-roughing").at(self.place(word));
-        self.finish(diagnostic.with("word", quote))
+        })
     }
 
     /// I and K where they belong to the wall at the end of compensation.
