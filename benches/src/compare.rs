@@ -7,8 +7,8 @@ use crate::generate;
 
 /// What one run took.
 #[derive(Clone, Copy)]
-struct Cost {
-    cpu_s: f64,
+pub struct Cost {
+    pub cpu_s: f64,
     memory_mib: f64,
 }
 
@@ -80,7 +80,14 @@ pub fn run(blocks: u64, rounds: usize) -> Result<(), String> {
             _ => {}
         }
     }
-    Ok(())
+    crate::cycles::run(&folder, peer.as_ref(), rounds)
+}
+
+/// The cycles alone.
+pub fn cycles(rounds: usize) -> Result<(), String> {
+    let folder = std::env::temp_dir().join("turnwright-bench");
+    std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
+    crate::cycles::run(&folder, Peer::find(&folder).as_ref(), rounds)
 }
 
 /// The loop of P5 in Lua 5.4 with its variables in a table, when that is installed.
@@ -119,14 +126,14 @@ fn reading(folder: &Path, rounds: usize) -> Result<(), String> {
     Ok(())
 }
 
-fn median(costs: &[Cost]) -> Cost {
+pub fn median(costs: &[Cost]) -> Cost {
     let mut sorted = costs.to_vec();
     sorted.sort_by(|a, b| a.cpu_s.total_cmp(&b.cpu_s));
     let memory_mib = costs.iter().map(|cost| cost.memory_mib).fold(0.0, f64::max);
     Cost { memory_mib, ..sorted[sorted.len() / 2] }
 }
 
-fn own(step: &str, file: &Path) -> Result<Cost, String> {
+pub fn own(step: &str, file: &Path) -> Result<Cost, String> {
     let program = std::env::current_exe().map_err(|error| error.to_string())?;
     let mut command = Command::new(program);
     let peak = std::env::temp_dir().join("turnwright-bench").join("peak");
@@ -153,13 +160,13 @@ pub fn note_peak() {
 }
 
 /// LinuxCNC's stand-alone interpreter.
-struct Peer {
+pub struct Peer {
     silence: Option<PathBuf>,
     home: PathBuf,
 }
 
 impl Peer {
-    fn find(folder: &Path) -> Option<Self> {
+    pub fn find(folder: &Path) -> Option<Self> {
         Command::new("rs274").arg("-h").stdout(Stdio::null()).stderr(Stdio::null()).status().ok()?;
         let library = folder.join("silence.so");
         let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("silence.c");
@@ -173,13 +180,24 @@ impl Peer {
         Some(Self { silence, home: folder.to_path_buf() })
     }
 
-    fn run(&self, file: &Path, silent: bool) -> Result<Cost, String> {
+    pub fn run(&self, file: &Path, silent: bool) -> Result<Cost, String> {
         let mut command = Command::new("rs274");
         command.arg("-g").arg(file).env("HOME", &self.home);
         if let Some(library) = self.silence.as_ref().filter(|_| silent) {
             command.env("LD_PRELOAD", library);
         }
         measure(command)
+    }
+}
+
+impl Peer {
+    /// How many moves a program makes there.
+    pub fn moves(&self, file: &Path) -> Result<u64, String> {
+        let output = Command::new("rs274").arg("-g").arg(file).env("HOME", &self.home).output();
+        let output = output.map_err(|error| format!("rs274: {error}"))?;
+        let text = String::from_utf8_lossy(&output.stdout);
+        Ok(text.lines().filter(|line| line.contains(" STRAIGHT_") || line.contains(" ARC_FEED")).count()
+            as u64)
     }
 }
 

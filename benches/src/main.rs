@@ -1,12 +1,13 @@
 //! Speed and memory, measured: reading, interpreting, listing, and the same motion in LinuxCNC's interpreter.
 //!
 //! `cargo run --release -p turnwright-benches -- compare` makes the programs, runs both sides in turn and prints
-//! ratios (goals: P1 G1 blocks, P3 numbered blocks, P4 arcs, P5 and P6 macro loops, P8 listing,
+//! ratios (goals: P1 G1 blocks, P3 numbered blocks, P4 arcs, P5 and P6 macro loops, P7 cycles, P8 listing,
 //! S1 memory, S2 growth, S3 jumps). `rs274` is run
 //! as a separate program when it is installed; without it only our own figures are printed.
-//! `generate DIR [BLOCKS]`, `lex FILE`, `tree FILE`, `interpret FILE`, `listing FILE` do single steps.
+//! `cycles` runs P7 and a figure of 100 pockets alone; `generate DIR [BLOCKS]`, `lex FILE`, `tree FILE`, `interpret FILE`, `listing FILE` do single steps.
 
 mod compare;
+mod cycles;
 mod generate;
 
 use std::fs::File;
@@ -25,22 +26,24 @@ use turnwright_syntax::{Block, Tree, find_line_end, scan_block};
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let result =
-        match words.as_slice() {
-            ["generate", folder] => generate::all(Path::new(folder), 1_000_000),
-            ["generate", folder, blocks] => match blocks.parse() {
-                Ok(blocks) => generate::all(Path::new(folder), blocks),
-                Err(_) => Err(format!("{blocks} is no number of blocks")),
-            },
-            ["lex", file] => lex(Path::new(file)),
-            ["tree", file] => tree(Path::new(file)),
-            ["interpret", file] => interpret(Path::new(file)),
-            ["listing", file] => listing(Path::new(file)),
-            ["compare"] => compare::run(1_000_000, 5),
-            ["compare", blocks] => compare::run(blocks.parse().unwrap_or(1_000_000), 5),
-            _ => Err("usage: compare [BLOCKS] | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE"
-                .to_string()),
-        };
+    let result = match words.as_slice() {
+        ["generate", folder] => generate::all(Path::new(folder), 1_000_000),
+        ["generate", folder, blocks] => match blocks.parse() {
+            Ok(blocks) => generate::all(Path::new(folder), blocks),
+            Err(_) => Err(format!("{blocks} is no number of blocks")),
+        },
+        ["lex", file] => lex(Path::new(file)),
+        ["tree", file] => tree(Path::new(file)),
+        ["interpret", file] => interpret(Path::new(file)).map(drop),
+        ["listing", file] => listing(Path::new(file)),
+        ["cycles"] => compare::cycles(3),
+        ["compare"] => compare::run(1_000_000, 5),
+        ["compare", blocks] => compare::run(blocks.parse().unwrap_or(1_000_000), 5),
+        _ => {
+            Err("usage: compare [BLOCKS] | cycles | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE"
+                .to_string())
+        }
+    };
     compare::note_peak();
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -114,8 +117,8 @@ fn interpreter(path: &Path) -> Result<(Interpreter, Texts), String> {
     Ok((interpreter, Texts(file)))
 }
 
-/// Interprets a file and adds up what came out.
-fn interpret(path: &Path) -> Result<(), String> {
+/// Interprets a file and adds up what came out: the number of moves.
+fn interpret(path: &Path) -> Result<u64, String> {
     let (mut interpreter, mut texts) = interpreter(path)?;
     let mut from = Point::new(interpreter.position().x.to_mm(), interpreter.position().z.to_mm());
     let (mut moves, mut length_mm) = (0u64, 0.0f64);
@@ -143,7 +146,7 @@ fn interpret(path: &Path) -> Result<(), String> {
         }
     }
     println!("{moves} moves, {length_mm:.4} mm");
-    Ok(())
+    Ok(moves)
 }
 
 /// Interprets a file and writes the trace to nowhere.

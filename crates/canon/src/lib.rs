@@ -341,12 +341,23 @@ pub struct Origin {
     pub depth: u8,
     /// The cycle, when one made the command.
     pub cycle: Option<CycleOrigin>,
+    /// In single-block operation the control does not stop behind this command, but behind a later one.
+    pub runs_on: bool,
 }
 
 impl Origin {
     /// The origin of a block outside any cycle.
     pub const fn line(line: u32) -> Self {
-        Self { source: 0, line, figure_line: None, sequence: None, program: None, depth: 0, cycle: None }
+        Self {
+            source: 0,
+            line,
+            figure_line: None,
+            sequence: None,
+            program: None,
+            depth: 0,
+            cycle: None,
+            runs_on: false,
+        }
     }
 }
 

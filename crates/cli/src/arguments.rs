@@ -219,14 +219,17 @@ pub(crate) struct Plot {
 #[derive(Debug, Args)]
 #[command(after_long_help = examples("explain"))]
 pub(crate) struct Explain {
-    /// G71, M03, PS0062, 062, cut-depth-illegal, 5130, 3401#0 …
+    /// G71, M03, PS0062, 062, cut-depth-illegal, 5130, 3401#0 …; with --line a program
+    #[arg(value_name = "CODE|FILE")]
     pub(crate) code: String,
-    /// Control that is asked [default: the usual one of `turnwright controls`]
-    #[arg(long, value_name = "NAME")]
-    pub(crate) control: Option<String>,
+    /// Shows every pass of the cycle that this line of the program runs, and what caused it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) line: Option<u32>,
     /// Form of the answer
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
     pub(crate) format: LookupFormat,
+    #[command(flatten)]
+    pub(crate) machine: Machine,
 }
 
 /// Lists the controls and what differs between them.

@@ -58,3 +58,48 @@ fn a_program_of_the_card_calls_no_other_one_from_there() {
     assert_eq!(ran.status, 1, "{}", ran.err);
     assert!(ran.err.contains("PS0210"), "{}", ran.err);
 }
+
+const ROUGHING: &str = "S800 M03\nG00 X60. Z2.\nG71 U10. R1.\nG71 P10 Q20 U0.4 W0.1 F0.2\nN10 G00 X30.\nG01 Z-20.\nX50. Z-30.\nN20 X60.\nM30\n";
+
+#[test]
+fn every_pass_of_a_cycle_says_what_caused_it() {
+    let folder = Folder::new();
+    let program = folder.file("part.nc", ROUGHING);
+    let ran = turnwright(&["explain", &program, "--line", "4", "--control", "fanuc-0i-tf"]);
+    assert_eq!(ran.status, 0, "{}", ran.err);
+    let rows: Vec<Vec<&str>> = ran.out.lines().map(|line| line.split_whitespace().collect()).collect();
+    let row = |number: &str| rows.iter().find(|row| row.first() == Some(&number)).expect("a row").join(" ");
+    // From X60.4: the first level lies at X40.4, 9.8 below the start point, and ends where line 7 rises above it.
+    assert_eq!(row("1"), "1 cut 9.8 40.4 2.1 40.4 -24.9 U10. in line 3, figure line 7");
+    assert_eq!(row("2"), "2 along the figure 14.8 30.4 2.1 60.4 -29.9 figure lines 6 to 8");
+    assert!(ran.out.contains("R1. in line 3") && ran.out.contains("parameter 5134"), "{}", ran.out);
+
+    let json =
+        turnwright(&["explain", &program, "--line", "4", "--control", "fanuc-0i-tf", "--format", "json"]);
+    let value: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
+    assert_eq!(value["cycle"], "G71");
+    assert_eq!(value["passes"].as_array().map(Vec::len), Some(2));
+    assert_eq!(value["parameters"][0]["word"], "U10.");
+
+    let ran = turnwright(&["explain", &program, "--line", "4", "--control", "gsk-988ta", "--lang", "zh"]);
+    assert!(ran.out.contains("第 3 行的 U10."), "{}", ran.out);
+    let ran = turnwright(&["explain", &program, "--line", "2", "--control", "fanuc-0i-tf"]);
+    assert!(ran.status == 2 && ran.err.contains("line 2"), "{}", ran.err);
+}
+
+#[test]
+fn the_depths_of_a_thread_come_from_their_words() {
+    let folder = Folder::new();
+    let text = "G97 S500 M03\nG00 X25. Z5.\nG76 P020060 Q100 R0.05\nG76 X17.4 Z-20. P1300 Q400 F2.\nM30\n";
+    let program = folder.file("thread.nc", text);
+    let ran = turnwright(&["explain", &program, "--line", "4", "--control", "fanuc-0i-tf"]);
+    assert_eq!(ran.status, 0, "{}", ran.err);
+    let row = |number: &str| {
+        let line = ran.out.lines().find(|line| line.trim_start().starts_with(number)).expect("a row");
+        line.to_string()
+    };
+    assert!(row("1 ").ends_with("Q400 in line 4"), "{}", ran.out);
+    assert!(row("6 ").ends_with("Q100 in line 3"), "{}", ran.out);
+    assert!(row("10 ").ends_with("P1300 in line 4"), "{}", ran.out);
+    assert!(row("11 ").ends_with("P020060 in line 3"), "{}", ran.out);
+}

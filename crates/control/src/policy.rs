@@ -368,6 +368,14 @@ policies! {
         /// The nose stands square to both moves, one after the other.
         BothSquare,
     }
+    /// Where single-block operation stops in roughing, pattern and grooving cycles. Threads stop pass by pass, single
+    /// cycles at their end.
+    cycle_single_block: CycleSingleBlock {
+        /// Behind every move.
+        EveryMove,
+        /// Behind every pass, or every move when the parameter says so.
+        ByParameter,
+    }
     /// What roughing with pockets does.
     type_two: TypeTwo {
         /// It exists.
@@ -426,6 +434,14 @@ policies! {
         Feed,
         /// Rapid traverse.
         Rapid,
+    }
+    /// A figure of pattern repeating that turns back in Z.
+    pattern_monotony: PatternMonotony {
+        /// Nothing is said against it.
+        Free,
+        /// The manual asks for Z to run one way; whether the control refuses it is not known, so it runs, with a
+        /// warning.
+        Required,
     }
     /// A pattern repeating cycle with one pass.
     single_pattern_pass: SinglePatternPass {

@@ -198,13 +198,19 @@ impl Piece {
 
     /// Exact but for the last fraction of a nanometre, so that a true half increment is seen as one.
     fn line_crossing(&self, level: i64) -> f64 {
-        let span = i128::from(self.h1 - self.h0);
+        let span = self.h1 - self.h0;
         if span == 0 {
             return self.v0 as f64;
         }
-        let product = i128::from(level - self.h0) * i128::from(self.v1 - self.v0) * span.signum();
-        let (whole, rest) = (product.div_euclid(span.abs()), product.rem_euclid(span.abs()));
-        (i128::from(self.v0) + whole) as f64 + rest as f64 / span.abs() as f64
+        let (depth, way) = ((level - self.h0) * span.signum(), self.v1 - self.v0);
+        if let Some(product) = depth.checked_mul(way) {
+            let (whole, rest) = (product.div_euclid(span.abs()), product.rem_euclid(span.abs()));
+            return (self.v0 + whole) as f64 + rest as f64 / span.abs() as f64;
+        }
+        // Longer than any lathe.
+        let (product, span) = (i128::from(depth) * i128::from(way), i128::from(span.abs()));
+        let (whole, rest) = (product.div_euclid(span), product.rem_euclid(span));
+        (i128::from(self.v0) + whole) as f64 + rest as f64 / span as f64
     }
 }
 

@@ -191,7 +191,7 @@ impl Core {
         let read = read.and_then(|first| self.stop_reading_ahead().map(|()| first));
         self.compensation = compensation;
         self.look_at_moves();
-        let behind = self.resume();
+        let behind = self.next_block();
         let capture = self.capture.take();
         (self.modal, self.at, self.tip) = (modal, at, tip);
         let (first_letters, first_place) = read?;

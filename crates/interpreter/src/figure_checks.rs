@@ -5,7 +5,7 @@
 //! it goes on although a machinist would not mean it. Source: rules of the figure, chapters 1.5, 1.6, 3, 4 and 11 of
 //! the cycles.
 
-use turnwright_control::policy::{CycleType, MonotonyCheck, TypeTwo};
+use turnwright_control::policy::{CycleType, MonotonyCheck, PatternMonotony, TypeTwo};
 use turnwright_cycles::{self as cycles, CutAlong};
 use turnwright_diagnostics::{Diagnostic, Place};
 use turnwright_syntax::{Block, Value};
@@ -28,6 +28,23 @@ pub(crate) enum RoughType {
 /// Whether a word that switches something on is there and not zero.
 pub(crate) fn switches_on(block: &Block, letter: u8) -> bool {
     block.word(letter).is_some_and(|word| matches!(word.value, Value::Number(number) if number.digits != 0))
+}
+
+/// Which way along X and along Z the part lies: where the infeed goes, or on an axis without infeed towards the
+/// furthest point of the figure.
+fn ways_into_work(figure: &cycles::Figure, along: Option<CutAlong>) -> (Length, Length) {
+    let start = figure.start;
+    let way = |is_infeed: bool, way: fn(&cycles::Element, Position<WorkTip>) -> Length| {
+        let furthest = || {
+            let ways = figure.elements.iter().map(|element| way(element, start));
+            ways.max_by_key(|way| way.abs()).unwrap_or_default()
+        };
+        let first = figure.elements.first().map(|element| way(element, start));
+        first.filter(|first| is_infeed && !first.is_zero()).unwrap_or_else(furthest)
+    };
+    let x = way(along == Some(CutAlong::Z), |element, start| (element.to.x - start.x).0);
+    let z = way(along == Some(CutAlong::X), |element, start| element.to.z - start.z);
+    (x, z)
 }
 
 impl Core {
@@ -158,8 +175,7 @@ impl Core {
         }
     }
 
-    /// Warns about allowances that lead into the part; true when it did. The part lies where the infeed goes, or
-    /// on an axis without infeed towards the furthest point of the figure; an allowance must point back.
+    /// Warns about allowances that lead into the part; true when it did.
     pub(crate) fn warn_allowance_signs(
         &mut self,
         call: &Call<'_>,
@@ -167,14 +183,7 @@ impl Core {
         along: Option<CutAlong>,
         (allowance_x, allowance_z): (Radius, Length),
     ) -> bool {
-        let start = figure.start;
-        let way = |is_infeed: bool, way: fn(&cycles::Element, Position<WorkTip>) -> Length| {
-            let reach = if is_infeed { 1 } else { figure.elements.len() };
-            let ways = figure.elements.iter().take(reach).map(|element| way(element, start));
-            ways.max_by_key(|way| way.abs()).unwrap_or_default()
-        };
-        let x = way(along == Some(CutAlong::Z), |element, start| (element.to.x - start.x).0);
-        let z = way(along == Some(CutAlong::X), |element, start| element.to.z - start.z);
+        let (x, z) = ways_into_work(figure, along);
         let mut warned = false;
         for (allowance, way, letter) in [(allowance_x.0, x, b'U'), (allowance_z, z, b'W')] {
             if allowance.signum() * way.signum() > 0
@@ -185,6 +194,35 @@ impl Core {
             }
         }
         warned
+    }
+
+    /// What a machinist would not mean in pattern repeating: a relief that leads into the part, and an end from which
+    /// the way to the next pass does. A control that asks for Z to run one way says so.
+    pub(crate) fn check_pattern(
+        &mut self,
+        captured: &Captured,
+        (relief_x, relief_z): (Radius, Length),
+        call: &Call<'_>,
+    ) {
+        let figure = &captured.figure;
+        let (x, z) = ways_into_work(figure, None);
+        if relief_x.0.signum() * x.signum() > 0 || relief_z.signum() * z.signum() > 0 {
+            self.warn_block("relief-sign");
+        }
+        let Some(last) = figure.elements.last() else { return };
+        let tolerance = self.monotony_tolerance();
+        if last.to != figure.start
+            && let Some(hump) = cycles::hump_before_end(figure, CutAlong::Z, tolerance)
+        {
+            let place = self.element_place(captured, figure.elements.len() as u32 - 1);
+            self.warn_element("figure-not-closed", place, Some(self.element_place(captured, hump)));
+        }
+        if self.control.policies.pattern_monotony == PatternMonotony::Required
+            && let Some(fault) = cycles::turn_back_fault(figure, CutAlong::Z, tolerance)
+        {
+            let near = call.word.map(|word| self.place(word));
+            self.warn_element("pattern-turns-back", self.element_place(captured, fault.element), near);
+        }
     }
 
     /// The line of a figure's element; its bytes are not at hand any more, so the whole line is meant.

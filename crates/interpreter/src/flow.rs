@@ -128,6 +128,14 @@ impl Core {
         }
     }
 
+    /// The block that comes next, when none is in work.
+    pub(crate) fn next_block(&self) -> Resume {
+        match self.cache.current {
+            Some(id) => self.cache.start(id),
+            None => self.resume(),
+        }
+    }
+
     /// The line of the block in work.
     pub(crate) fn line_cursor(&self) -> Cursor {
         Cursor { source: self.at.source, offset: self.at.line_offset, line: self.at.line }

@@ -55,7 +55,7 @@ mod zeros;
 pub use functions::implemented_functions;
 pub use in_force::GROUPS;
 pub use index::ProgramName;
-pub use machine::{Interpreter, Options, Step, SyncReason};
+pub use machine::{GivenParameter, Interpreter, Options, Step, SyncReason};
 pub use parts::Parts;
 pub use punch::{DataFault, DataImport, export_offsets, export_work_zeros, import_data};
 pub use text::LINE_BYTES_MAX;

@@ -3,7 +3,7 @@
 use std::collections::{HashSet, VecDeque};
 
 use turnwright_canon::{Command, CycleOrigin, OtherAxes, PathMode};
-use turnwright_control::{Control, Mode, Setup, SetupFault};
+use turnwright_control::{Control, Mode, Parameters, Setup, SetupFault};
 use turnwright_cycles::Element;
 use turnwright_diagnostics::{Diagnostic, SourceId};
 use turnwright_syntax::Block;
@@ -70,6 +70,19 @@ impl From<Alarm> for Halt {
     fn from(alarm: Alarm) -> Self {
         Self::Alarm(alarm)
     }
+}
+
+/// A parameter that a word of a cycle's data block has written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GivenParameter {
+    /// Name of the parameter.
+    pub parameter: &'static str,
+    /// The word.
+    pub word: String,
+    /// Number of the text that holds it, and its line there.
+    pub source: SourceId,
+    /// The line, from 1.
+    pub line: u32,
 }
 
 /// What the caller may choose for a run.
@@ -164,6 +177,8 @@ pub(crate) struct Core {
     pub(crate) corner: Option<OpenPath>,
     /// Nose compensation, from G41 or G42 until the move behind G40.
     pub(crate) compensation: Option<Box<Compensation>>,
+    /// Parameters that data blocks of cycles have written.
+    pub(crate) given: Vec<GivenParameter>,
     /// First and last sequence numbers of figures that were roughed.
     pub(crate) roughed: Vec<(u32, u32)>,
     /// Lines of figures that were finished before anything roughed them.
@@ -321,6 +336,7 @@ impl Interpreter {
             capture: None,
             corner: None,
             compensation: None,
+            given: Vec::new(),
             roughed: Vec::new(),
             finished_first: Vec::new(),
             thread_blocks: 0,
@@ -376,6 +392,18 @@ impl Interpreter {
         self.core.at.line_offset
     }
 
+    /// The parameters as they are now: data blocks of cycles write some of them.
+    pub fn parameters(&self) -> Parameters {
+        let mut parameters = self.core.control.parameters.clone();
+        self.core.settings.store(&mut parameters);
+        parameters
+    }
+
+    /// The parameters that data blocks of cycles have written so far, each with the last word that did.
+    pub fn given_parameters(&self) -> &[GivenParameter] {
+        &self.core.given
+    }
+
     /// Decimal places of the control's least increment, metric.
     pub fn decimals(&self) -> u8 {
         self.core.settings.metric_increment.metric_decimals()
@@ -390,7 +418,10 @@ impl Interpreter {
     #[inline]
     pub fn step(&mut self, environment: &mut dyn Environment) -> Step {
         loop {
-            if let Some(command) = self.core.out.pop_front() {
+            if let Some(mut command) = self.core.out.pop_front() {
+                if !self.core.out.is_empty() || self.core.macros.state.single_block != 0 {
+                    command.origin.runs_on |= self.core.runs_on_behind(&command);
+                }
                 if command.action.end_point().is_some() {
                     self.core.idle_blocks = 0;
                 }
@@ -407,7 +438,14 @@ impl Interpreter {
                 return Step::End;
             }
             let result = if self.core.active.is_some() {
-                self.core.next_cycle_move().map_err(Halt::from)
+                match self.core.next_cycle_move() {
+                    Ok(Some(command)) => {
+                        self.core.idle_blocks = 0;
+                        self.core.moves_done = false;
+                        return Step::Emit(command);
+                    }
+                    ended => ended.map(drop).map_err(Halt::from),
+                }
             } else if self.core.is_due() {
                 self.core.finish_waiting(&self.block, environment).map_err(Halt::from)
             } else {

@@ -1,6 +1,8 @@
 //! Giving out commands: moves, and the moves of cycles one by one.
 
-use turnwright_canon::{Action, Command, Curve, CycleLabel, CycleOrigin, Origin, RapidPath, Shape, Turn};
+use turnwright_canon::{
+    Action, Command, Curve, CycleLabel, CycleOrigin, Origin, Phase, RapidPath, Shape, Turn,
+};
 use turnwright_cycles::{
     BoxCycle, CycleMove, Element, FigureMotion, Groove, Hole, Pattern, PocketRoughing, Roughing,
     SemiFinished, ThreadOnce, Threading,
@@ -27,6 +29,24 @@ pub(crate) struct ActiveCycle {
     /// Passes of the same modal cycle made before.
     pub(crate) passes_before: u32,
     pub(crate) moves_made: u64,
+    /// What single-block operation stops behind.
+    stops_behind: StopUnit,
+    /// The next move, where it decides about a stop behind the one before.
+    next: Option<CycleMove>,
+}
+
+/// Single-block operation is switched off by the program: the bit of `#3003`.
+const SINGLE_BLOCK_OFF: u8 = 1;
+
+/// What single-block operation stops behind in a cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum StopUnit {
+    /// Every move that is no thread.
+    Move,
+    /// Every pass that brought the tool back.
+    Pass,
+    /// The way to a hole, the way down to the point R, and the end of the hole.
+    Hole,
 }
 
 /// The cycles that give moves.
@@ -121,6 +141,7 @@ impl Core {
                 program: self.program,
                 depth: self.depth(),
                 cycle: self.in_cycle,
+                runs_on: false,
             };
         }
         Origin {
@@ -131,6 +152,7 @@ impl Core {
             program: self.program,
             depth: self.depth(),
             cycle: None,
+            runs_on: false,
         }
     }
 
@@ -160,7 +182,8 @@ impl Core {
             if self.looks_at_moves {
                 return self.emit_looked_at(from, action);
             }
-            let origin = self.origin();
+            let mut origin = self.origin();
+            origin.runs_on = matches!(action, Action::Thread { .. });
             self.out.push_back(Command::new(action, origin));
         }
         Ok(())
@@ -171,7 +194,9 @@ impl Core {
         if self.compensation.is_some() {
             self.compensate(from, action)
         } else {
-            self.give(from, action, self.origin(), None)
+            let mut origin = self.origin();
+            origin.runs_on = matches!(action, Action::Thread { .. });
+            self.give(from, action, origin, None)
         }
     }
 
@@ -259,18 +284,81 @@ impl Core {
         // The first move of the cycle takes the whole movement of the offset along.
         self.untaken = None;
         self.suspend_compensation()?;
-        self.active = Some(ActiveCycle { moves, code, at: self.at, lines, passes_before, moves_made: 0 });
+        let stops_behind = self.stop_unit(&moves);
+        self.active = Some(ActiveCycle {
+            moves,
+            code,
+            at: self.at,
+            lines,
+            passes_before,
+            moves_made: 0,
+            stops_behind,
+            next: None,
+        });
         Ok(())
     }
 
-    /// Gives out the next move of the active cycle, or ends it.
-    pub(crate) fn next_cycle_move(&mut self) -> Result<(), Alarm> {
-        let depth = self.depth();
-        let Some(cycle) = &mut self.active else { return Ok(()) };
-        let Some(step) = cycle.moves.next() else {
-            self.active = None;
-            return Ok(());
+    fn stop_unit(&self, moves: &CycleMoves) -> StopUnit {
+        use turnwright_control::policy::CycleSingleBlock;
+        match moves {
+            CycleMoves::Hole(_) => StopUnit::Hole,
+            CycleMoves::Threading(_) | CycleMoves::Box(_) | CycleMoves::ThreadOnce(_) => StopUnit::Pass,
+            _ => match self.control.policies.cycle_single_block {
+                CycleSingleBlock::ByParameter if !self.settings.cycle_stops_behind_moves => StopUnit::Pass,
+                CycleSingleBlock::EveryMove | CycleSingleBlock::ByParameter => StopUnit::Move,
+            },
+        }
+    }
+
+    /// Whether single-block operation goes on behind a command for what follows it.
+    #[cold]
+    pub(crate) fn runs_on_behind(&self, command: &Command) -> bool {
+        if self.macros.state.single_block & SINGLE_BLOCK_OFF != 0 {
+            return true;
+        }
+        // The way home of the finishing cycle is not part of the figure's last block.
+        let block = |origin: &Origin| {
+            (
+                origin.source,
+                origin.line,
+                origin.figure_line,
+                origin.depth,
+                origin.cycle.map(|cycle| cycle.phase),
+            )
         };
+        let is_cut = |command: &Command| matches!(command.action, Action::Feed { .. });
+        match self.out.front() {
+            // The line and its corner.
+            Some(next) if is_cut(command) && is_cut(next) && self.settings.corner_stops_single_block => false,
+            Some(next) => block(&command.origin) == block(&next.origin),
+            None => false,
+        }
+    }
+
+    /// The next move of the active cycle; `None` when it was given out, or when the cycle has ended.
+    pub(crate) fn next_cycle_move(&mut self) -> Result<Option<Command>, Alarm> {
+        let depth = self.depth();
+        let Some(cycle) = &mut self.active else { return Ok(None) };
+        let Some(step) = cycle.next.take().or_else(|| cycle.moves.next()) else {
+            self.active = None;
+            return Ok(None);
+        };
+        let has_more_to_do = self.waiting.is_some();
+        if cycle.stops_behind != StopUnit::Move || has_more_to_do {
+            cycle.next = cycle.moves.next();
+        }
+        let runs_on = match (&cycle.next, cycle.stops_behind) {
+            (Some(next), StopUnit::Pass) => step.pass == 0 || next.pass == step.pass,
+            (None, _) if has_more_to_do => true,
+            (_, StopUnit::Move) => matches!(step.action, Action::Thread { .. }),
+            (Some(next), StopUnit::Hole) => {
+                let comes_to_rest = matches!(step.phase, Phase::Shift | Phase::Approach);
+                let is_move = step.action.end_point().is_some();
+                next.pass == step.pass && !(comes_to_rest && is_move)
+            }
+            (None, StopUnit::Pass | StopUnit::Hole) => false,
+        };
+        let runs_on = runs_on || self.macros.state.single_block & SINGLE_BLOCK_OFF != 0;
         cycle.moves_made += 1;
         self.cycle_moves += 1;
         if cycle.moves_made > limits::CYCLE_MOVES_MAX || self.cycle_moves > limits::RUN_MOVES_MAX {
@@ -287,6 +375,7 @@ impl Core {
             program: self.program,
             depth,
             cycle: Some(CycleOrigin { label: CycleLabel(cycle.code), pass, phase: step.phase }),
+            runs_on,
         };
         let action = step.action;
         if let Some(to) = action.end_point() {
@@ -295,10 +384,10 @@ impl Core {
             if self.looks_at_moves {
                 self.follow_plain(to);
                 let nose = self.compensation.is_some().then(|| self.nose());
-                return self.give(from, action, origin, nose);
+                self.give(from, action, origin, nose)?;
+                return Ok(None);
             }
         }
-        self.out.push_back(Command::new(action, origin));
-        Ok(())
+        Ok(Some(Command::new(action, origin)))
     }
 }

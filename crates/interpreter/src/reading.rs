@@ -170,6 +170,8 @@ impl Core {
             || self.is_over
             || self.active.is_some()
             || self.waiting.is_some()
+            // Who reads a figure looks at every block.
+            || self.capture.is_some()
             || self.macros.interrupt.is_some()
     }
 

@@ -4,7 +4,8 @@
 //! A block opened with `nc` takes words: a control (`fanuc-0i-tf`), parameters (`3401#0=1`), `skip=1`,
 //! `machine=turn-mill`. A block
 //! `setup` before it is its setup file. The
-//! following block is `listing` (commands), `diagnostics` (alarms and warnings), or both one after the other; a
+//! following block is `listing` (commands), `single-block` (commands, with an empty line where single-block operation
+//! stops), `diagnostics` (alarms and warnings), or several one after the other; a
 //! program without a `diagnostics` block must have no alarm. `TURNWRIGHT_BLESS=1 cargo test -p
 //! turnwright-interpreter --test fixtures` rewrites the expected blocks; read the difference as behaviour.
 #![allow(clippy::disallowed_methods, clippy::disallowed_macros, reason = "tests read files")]
@@ -88,10 +89,14 @@ fn check(text: &str, name: &str, failures: &mut Vec<String>) -> (String, usize) 
                 blessed.push_str(&body);
                 setup = body;
             }
-            Some(kind @ ("listing" | "diagnostics")) => {
+            Some(kind @ ("listing" | "diagnostics" | "single-block")) => {
                 let (run, _, saw) =
                     last.as_mut().unwrap_or_else(|| panic!("{name}:{}: no program", number + 1));
-                let actual = if kind == "listing" { run.listing() } else { run.diagnostics() };
+                let actual = match kind {
+                    "listing" => run.listing(),
+                    "single-block" => run.single_blocks(),
+                    _ => run.diagnostics(),
+                };
                 *saw |= kind == "diagnostics";
                 if actual != body {
                     failures.push(format!("{name}:{}: expected\n{body}but got\n{actual}", number + 1));

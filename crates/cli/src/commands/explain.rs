@@ -44,8 +44,11 @@ struct Answer {
 
 /// Answers.
 pub(crate) fn run(options: &Explain, printer: &Printer) -> Result<Status, Fault> {
+    if let Some(line) = options.line {
+        return super::passes::run(options, line, printer);
+    }
     let speech = printer.speech;
-    let control = load_control(options.control.as_deref().unwrap_or(DEFAULT_CONTROL), "", speech)?;
+    let control = load_control(options.machine.control.as_deref().unwrap_or(DEFAULT_CONTROL), "", speech)?;
     let asked = options.code.trim();
     let answers = answers(asked, &control, speech);
     if answers.is_empty() {

@@ -5,6 +5,7 @@ mod controls;
 mod data;
 mod explain;
 mod generate;
+mod passes;
 mod plot;
 mod run;
 mod trace;

@@ -338,6 +338,9 @@ fn write_origin(out: &mut Vec<u8>, origin: &Origin) {
         out.extend_from_slice(cycle.phase.word().as_bytes());
         out.push(b'"');
     }
+    if origin.runs_on {
+        out.extend_from_slice(br#","runs_on":true"#);
+    }
     out.extend_from_slice(b"}\n");
 }
 

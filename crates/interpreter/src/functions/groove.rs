@@ -42,6 +42,7 @@ fn groove(core: &mut Core, call: &mut Call<'_>, peck_axis: cycles::PeckAxis) -> 
     if let Some(word) = call.block.word(b'R') {
         core.settings.groove_return = core.unsigned_length(word)?;
         core.missing_point(word);
+        core.note_given("groove-return", word);
     }
     Ok(())
 }

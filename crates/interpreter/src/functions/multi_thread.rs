@@ -117,10 +117,12 @@ impl Core {
                 return Err(self.alarm("minus-not-allowed", word));
             }
             self.settings.thread_minimum_depth = Radius(depth);
+            self.note_given("thread-minimum-depth", word);
         }
         if let Some(word) = block.word(b'R') {
             self.settings.thread_finishing_allowance = Radius(self.unsigned_length(word)?);
             self.missing_point(word);
+            self.note_given("thread-finishing-allowance", word);
         }
         if let Some(word) = block.word(b'D') {
             self.settings.thread_infeed = match self.whole(word, 99)? {
@@ -181,7 +183,9 @@ impl Core {
         }
         if passes > 0 {
             self.settings.thread_finishing_passes = passes;
+            self.note_given("thread-finishing-passes", word);
         }
+        self.note_given("thread-nose-angle", word);
         Ok(())
     }
 

@@ -41,13 +41,16 @@ impl Core {
         if let Some(word) = block.word(b'U') {
             self.settings.pattern_relief_x = self.radius(word, Role::RadialDepth)?;
             self.missing_point(word);
+            self.note_given("pattern-relief-x", word);
         }
         if let Some(word) = block.word(b'W') {
             self.settings.pattern_relief_z = self.length(word)?;
             self.missing_point(word);
+            self.note_given("pattern-relief-z", word);
         }
         if let Some(word) = block.word(b'R') {
             self.settings.pattern_passes = self.pattern_passes(word)?;
+            self.note_given("pattern-passes", word);
         }
         Ok(())
     }
@@ -94,6 +97,7 @@ impl Core {
         let captured = self.capture_figure(call)?;
         self.remember_range(&captured);
         self.warn_allowance_signs(call, &captured.figure, None, (allowance_x, allowance_z));
+        self.check_pattern(&captured, relief, call);
         let request = cycles::PatternRequest {
             context: self.cycle_context(feed),
             relief_x: relief.0,

@@ -17,7 +17,7 @@ use turnwright_control::policy::{
     PocketSemiFinish,
 };
 use turnwright_cycles as cycles;
-use turnwright_syntax::Block;
+use turnwright_syntax::{Block, Word};
 use turnwright_units::{Length, Radius};
 
 use super::Function;
@@ -25,7 +25,7 @@ use super::one_block::Form;
 use crate::block::Call;
 use crate::figure::Captured;
 use crate::figure_checks::{RoughType, switches_on};
-use crate::machine::Core;
+use crate::machine::{Core, GivenParameter};
 use crate::moves::CycleMoves;
 use crate::report::Alarm;
 use crate::words::Role;
@@ -61,6 +61,20 @@ impl Core {
         }
     }
 
+    /// Remembers which word wrote a parameter.
+    pub(super) fn note_given(&mut self, parameter: &'static str, word: &Word) {
+        let given = GivenParameter {
+            parameter,
+            word: self.quote(word.start, word.end),
+            source: self.at.source,
+            line: self.at.line,
+        };
+        match self.given.iter_mut().find(|other| other.parameter == parameter) {
+            Some(other) => *other = given,
+            None => self.given.push(given),
+        }
+    }
+
     /// The block without P and Q.
     fn store_roughing(&mut self, block: &Block, along: cycles::CutAlong) -> Result<(), Alarm> {
         let (depth, foreign): (u8, &[u8]) = match along {
@@ -75,9 +89,11 @@ impl Core {
                 return Err(self.alarm("cut-depth-illegal", word));
             }
             self.settings.cut_depth = value;
+            self.note_given("cycle-depth-of-cut", word);
         }
         if let Some(word) = block.word(b'R') {
             self.settings.cut_escape = self.unsigned_length(word)?;
+            self.note_given("cycle-escape", word);
             self.missing_point(word);
         }
         Ok(())

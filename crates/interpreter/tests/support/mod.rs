@@ -133,6 +133,16 @@ impl Run {
         String::from_utf8(out).expect("a listing is text")
     }
 
+    /// The listing as single-block operation sees it: an empty line where the control stops.
+    pub fn single_blocks(&self) -> String {
+        let mut out = Vec::new();
+        for command in &self.commands {
+            write_listing(&mut out, command, self.decimals);
+            out.extend_from_slice(if command.origin.runs_on { b"\n" } else { b"\n\n" });
+        }
+        String::from_utf8(out).expect("a listing is text")
+    }
+
     /// Diagnostics as a fixture shows them: `alarm PS0062 cut-depth-illegal 2:5-8 'U0.'`.
     pub fn diagnostics(&self) -> String {
         static MESSAGES: OnceLock<Messages> = OnceLock::new();
