@@ -54,11 +54,10 @@ impl Core {
             || matches!(self.frames.last().map(|frame| &frame.kind), Some(FrameKind::Finish { .. }))
     }
 
-    /// The block in work is the first of the figure being read.
+    /// The block in work is the first of the figure being read or finished.
     pub(crate) fn is_first_of_figure(&self) -> bool {
-        self.capture.as_ref().is_some_and(|capture| {
-            capture.elements.is_empty() && self.at.sequence == Some(capture.range.first)
-        })
+        let has_begun = self.capture.as_ref().is_some_and(|capture| !capture.elements.is_empty());
+        !has_begun && self.figure_range().is_some_and(|range| self.at.sequence == Some(range.first))
     }
 
     fn figure_range(&self) -> Option<FigureRange> {

@@ -14,6 +14,7 @@ use turnwright_units::{Position, WorkTip};
 
 use crate::Environment;
 use crate::auxiliary::{Auxiliary, Flow};
+use crate::compensation::Outside;
 use crate::figure::FigureRange;
 pub(crate) use crate::index::Resume;
 use crate::index::{ProgramIndex, ProgramName};
@@ -48,7 +49,14 @@ pub(crate) enum FrameKind {
     /// A macro.
     Macro(MacroFrame),
     /// The figure of a finishing cycle.
-    Finish { range: FigureRange, home: Position<WorkTip>, at: BlockPlace, code: u16 },
+    Finish {
+        range: FigureRange,
+        home: Position<WorkTip>,
+        at: BlockPlace,
+        code: u16,
+        /// Compensation in force around it, where it does not act inside.
+        outside: Option<Outside>,
+    },
 }
 
 /// A macro that runs.
@@ -605,6 +613,9 @@ impl Core {
         self.without_vector(|core| core.emit_move(home, back))?;
         self.in_cycle = None;
         if let Some(frame) = self.frames.pop() {
+            if let FrameKind::Finish { outside: Some(outside), .. } = frame.kind {
+                self.come_back_to(outside);
+            }
             self.go(frame.back, environment)?;
         }
         Ok(())
@@ -618,7 +629,9 @@ impl Core {
         code: u16,
         environment: &mut dyn Environment,
     ) -> Result<(), Alarm> {
-        self.push_frame(FrameKind::Finish { range, home: self.modal.position, at: self.at, code });
+        let outside = self.leave_outside()?;
+        let home = self.modal.position;
+        self.push_frame(FrameKind::Finish { range, home, at: self.at, code, outside });
         self.in_cycle = Some(CycleOrigin { label: CycleLabel(code), pass: 1, phase: Phase::Finish });
         self.go(first, environment)
     }

@@ -44,6 +44,9 @@ use crate::report::Alarm;
 /// Blocks without a move whose commands may wait, on any control.
 const HELD_BLOCKS_MAX: u8 = 8;
 
+/// The modal group of nose compensation.
+pub(crate) const COMPENSATION_GROUP: usize = 7;
+
 /// Slack of places that are computed twice.
 const SAME_MM: f64 = 1e-6;
 
@@ -107,6 +110,14 @@ pub(crate) struct Compensation {
     is_code_block: bool,
 }
 
+/// Compensation in force around a figure that knows nothing of it.
+#[derive(Debug)]
+pub(crate) struct Outside {
+    path: Option<Box<Compensation>>,
+    /// The code in force.
+    code: Option<u16>,
+}
+
 impl Compensation {
     fn new(stands: Position<WorkTip>, nose: Nose) -> Box<Self> {
         Box::new(Self {
@@ -151,6 +162,27 @@ impl Core {
         if let Some(side) = in_force.and_then(|path| path.side).filter(|_| shifts) {
             self.compensate_on(side);
         }
+    }
+
+    /// Before a figure is finished: where only its own first block can name compensation, that in force lets go.
+    pub(crate) fn leave_outside(&mut self) -> Result<Option<Outside>, Alarm> {
+        if self.control.policies.roughing_compensation != RoughingCompensation::InFirstBlock {
+            return Ok(None);
+        }
+        self.suspend_compensation()?;
+        let path = self.compensation.take();
+        let off = self.dispatch.codes_at_power_on[COMPENSATION_GROUP];
+        let code = std::mem::replace(&mut self.modal.in_force.codes[COMPENSATION_GROUP], off);
+        self.look_at_moves();
+        Ok(Some(Outside { path, code }))
+    }
+
+    /// Behind the figure: what was in force before it is so again.
+    pub(crate) fn come_back_to(&mut self, outside: Outside) {
+        self.compensation = outside.path;
+        self.modal.in_force.codes[COMPENSATION_GROUP] = outside.code;
+        self.follow_plain(self.tip);
+        self.look_at_moves();
     }
 
     /// G40, perhaps with the direction of a wall.

@@ -22,6 +22,7 @@ use turnwright_geometry::{Side, Vector};
 use super::Function;
 use crate::axes::Plane;
 use crate::block::Call;
+use crate::compensation::COMPENSATION_GROUP;
 use crate::machine::Core;
 use crate::report::Alarm;
 use crate::words::Role;
@@ -34,14 +35,17 @@ pub(super) static RIGHT: Function =
 pub(super) static OFF: Function =
     Function::mode("nose-compensation-off", end).allowed_in_figure().allowed_in_rotation();
 
-/// The modal group of nose compensation.
-const GROUP: usize = 7;
-
 fn start(core: &mut Core, call: &mut Call<'_>, side: Side) -> Result<(), Alarm> {
     if core.settings.compensation.refused_in_mdi {
         core.refuse_in_mdi("compensation-in-mdi", call.word)?;
     }
     if core.is_capturing() && !core.acts_in_roughed_figure(call)? {
+        return Ok(());
+    }
+    if let Some(word) = call.word
+        && !core.acts_in_finished_figure()
+    {
+        core.warn("compensation-not-in-first-block", word);
         return Ok(());
     }
     if let Some(word) = call.word
@@ -87,8 +91,8 @@ fn end(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
 impl Core {
     /// Nose compensation is on: its group holds another code than at power-on.
     pub(crate) fn is_compensating(&self) -> bool {
-        let in_force = self.modal.in_force.codes[GROUP];
-        in_force.is_some() && in_force != self.dispatch.codes_at_power_on[GROUP]
+        let in_force = self.modal.in_force.codes[COMPENSATION_GROUP];
+        in_force.is_some() && in_force != self.dispatch.codes_at_power_on[COMPENSATION_GROUP]
     }
 
     /// Whether a code of compensation acts in a figure that is roughed; by parameter it is refused there.
@@ -104,6 +108,13 @@ impl Core {
             RoughingCompensation::ByParameter => self.settings.compensation.roughs_compensated,
             RoughingCompensation::InFirstBlock => self.is_first_of_figure(),
         })
+    }
+
+    /// Whether compensation can begin in this block of a figure that is finished: on some controls only in its first.
+    fn acts_in_finished_figure(&self) -> bool {
+        let only_in_first = self.control.policies.roughing_compensation == RoughingCompensation::InFirstBlock
+            && self.is_in_figure();
+        !only_in_first || self.is_first_of_figure()
     }
 
     /// I and K where they belong to the wall at the end of compensation.
