@@ -104,7 +104,8 @@ impl Core {
             )
             || number == interrupt_on
             || number == interrupt_off;
-        if is_flow && self.is_in_figure() {
+        let stops = matches!(number, code::STOP | code::OPTIONAL_STOP);
+        if is_flow && self.is_in_figure() && !stops {
             return Err(match number {
                 _ if is_call => self.refuse_in_figure(word),
                 code::RETURN => self.refuse_in_figure(word),

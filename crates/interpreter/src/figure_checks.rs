@@ -5,15 +5,18 @@
 //! it goes on although a machinist would not mean it. Source: rules of the figure, chapters 1.5, 1.6, 3, 4 and 11 of
 //! the cycles.
 
+use turnwright_canon::Turn;
 use turnwright_control::policy::{CycleType, MonotonyCheck, PatternMonotony, TypeTwo};
 use turnwright_cycles::{self as cycles, CutAlong};
 use turnwright_diagnostics::{Diagnostic, Place};
+use turnwright_geometry::sweep_rad;
 use turnwright_syntax::{Block, Value};
 use turnwright_units::{Length, Position, Radius, WorkTip};
 
 use crate::block::Call;
 use crate::figure::Captured;
 use crate::machine::Core;
+use crate::plane::point;
 use crate::report::Alarm;
 
 /// How a figure is roughed.
@@ -24,6 +27,9 @@ pub(crate) enum RoughType {
     /// With pockets.
     Two,
 }
+
+/// What rounding adds to half a circle at most.
+const HALF_TURN_SLACK_RAD: f64 = 1e-3;
 
 /// Whether a word that switches something on is there and not zero.
 pub(crate) fn switches_on(block: &Block, letter: u8) -> bool {
@@ -59,8 +65,22 @@ impl Core {
             cycles::monotony_fault(&captured.figure, along, self.monotony_tolerance())
                 .is_some_and(|fault| (fault.axis == cycles::PlaneAxis::Second) == (along == CutAlong::Z))
         };
+        // A first block that moves along the cut is a wall, which only type II follows.
+        let begins_with_wall = || {
+            let start = captured.figure.start;
+            captured.figure.elements.first().is_some_and(|first| {
+                let is_arc = matches!(first.motion, cycles::FigureMotion::Arc { .. });
+                is_arc
+                    || match along {
+                        CutAlong::Z => first.to.z != start.z,
+                        CutAlong::X => first.to.x != start.x,
+                    }
+            })
+        };
         let is_two = match policies.cycle_type {
-            CycleType::ByTypeParameter if !self.settings.type_by_first_block => has_pockets(),
+            CycleType::ByTypeParameter if !self.settings.type_by_first_block => {
+                has_pockets() || begins_with_wall()
+            }
             _ => other,
         };
         let has_type_two = match policies.type_two {
@@ -150,6 +170,9 @@ impl Core {
             RoughType::One => cycles::monotony_fault(&captured.figure, along, tolerance),
             RoughType::Two => cycles::turn_back_fault(&captured.figure, along, tolerance),
         };
+        if kind == RoughType::One && self.control.policies.monotony_check == MonotonyCheck::ByWord {
+            self.refuse_round_arcs(captured, along)?;
+        }
         let Some(fault) = fault else { return Ok(()) };
         let place = self.element_place(captured, fault.element);
         let (key, axis) = match fault.axis {
@@ -161,6 +184,32 @@ impl Core {
         }
         if !self.already_said("figure-not-monotone-warning", place.line) {
             self.say(Diagnostic::warning("figure-not-monotone-warning").at(place).with("name", axis));
+        }
+        Ok(())
+    }
+
+    /// Arcs that must turn back, seen without the check: those of more than half a circle, and those that end where
+    /// they began along the cut.
+    fn refuse_round_arcs(&self, captured: &Captured, along: CutAlong) -> Result<(), Alarm> {
+        let mut from = captured.figure.start;
+        for (place, element) in captured.figure.elements.iter().enumerate() {
+            if let cycles::FigureMotion::Arc { turn, centre } = element.motion {
+                let sweep = sweep_rad(point(from), point(element.to), point(centre), turn == Turn::Clockwise);
+                let returns = match along {
+                    CutAlong::Z => from.z == element.to.z,
+                    CutAlong::X => from.x == element.to.x,
+                };
+                if returns || sweep.abs() > std::f64::consts::PI + HALF_TURN_SLACK_RAD {
+                    let key = match along {
+                        CutAlong::Z => "figure-not-monotone-z",
+                        CutAlong::X => "figure-not-monotone-x",
+                    };
+                    return Err(
+                        self.finish(Diagnostic::alarm(key).at(self.element_place(captured, place as u32)))
+                    );
+                }
+            }
+            from = element.to;
         }
         Ok(())
     }

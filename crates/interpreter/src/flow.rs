@@ -233,6 +233,8 @@ impl Core {
             return Err(self.alarm_at("call-in-compensation", word.as_ref()));
         }
         match flow {
+            // Roughing passes over what its figure does besides moving; finishing stops.
+            Flow::Stop | Flow::OptionalStop if self.is_capturing() => Ok(()),
             Flow::Stop => {
                 self.stop_reading_ahead()?;
                 self.emit(Action::Stop);

@@ -178,6 +178,8 @@ pub(crate) struct Settings {
     pub(crate) run_out_angle_deg: u8,
     pub(crate) one_block_form: bool,
     pub(crate) cut_depth: Length,
+    /// A block of its own has given depth or escape.
+    pub(crate) has_roughing_data: bool,
     pub(crate) cut_escape: Length,
     pub(crate) pattern_relief_x: Radius,
     pub(crate) pattern_relief_z: Length,
@@ -338,6 +340,7 @@ impl Settings {
             run_out_angle_deg: count("thread-run-out-angle").min(89) as u8,
             one_block_form: bit("one-block-cycle-form"),
             cut_depth: mm("cycle-depth-of-cut"),
+            has_roughing_data: false,
             cut_escape: mm("cycle-escape"),
             pattern_relief_x: Radius(mm("pattern-relief-x")),
             pattern_relief_z: mm("pattern-relief-z"),

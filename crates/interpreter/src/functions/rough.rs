@@ -44,8 +44,11 @@ const LETTERS: &[u8] = b"PQRDJKI";
 
 fn rough(core: &mut Core, call: &mut Call<'_>, along: cycles::CutAlong) -> Result<(), Alarm> {
     core.refuse_comma_words(call.block)?;
-    let form = core.cycle_form(call.block, b"DIK")?;
-    if form != Form::TwoBlocks || call.block.has(b'P') || call.block.has(b'Q') {
+    // I and K alone are those of the one-block form only where no other block has given the depth.
+    let runs = call.block.has(b'P') || call.block.has(b'Q');
+    let marks: &[u8] = if runs && !core.settings.has_roughing_data { b"DIK" } else { b"D" };
+    let form = core.cycle_form(call.block, marks)?;
+    if runs || form != Form::TwoBlocks {
         core.run_roughing(call, along, form)
     } else {
         core.store_roughing(call.block, along)
@@ -82,6 +85,7 @@ impl Core {
             cycles::CutAlong::X => (b'W', b"XZUJKDI"),
         };
         self.refuse_letters(block, foreign)?;
+        self.settings.has_roughing_data = true;
         if let Some(word) = block.word(depth) {
             let value = self.radius(word, Role::RadialDepth)?.0;
             self.missing_point(word);
