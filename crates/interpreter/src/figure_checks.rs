@@ -70,11 +70,11 @@ impl Core {
             let start = captured.figure.start;
             captured.figure.elements.first().is_some_and(|first| {
                 let is_arc = matches!(first.motion, cycles::FigureMotion::Arc { .. });
-                is_arc
-                    || match along {
-                        CutAlong::Z => first.to.z != start.z,
-                        CutAlong::X => first.to.x != start.x,
-                    }
+                let moves = match along {
+                    CutAlong::Z => first.to.z != start.z,
+                    CutAlong::X => first.to.x != start.x,
+                };
+                is_arc || (other && moves)
             })
         };
         let is_two = match policies.cycle_type {
