@@ -116,6 +116,13 @@ pub enum Action {
         /// Its number.
         code: u32,
     },
+    /// The second auxiliary function, which only the machine's own logic knows.
+    SecondAuxiliary {
+        /// Its letter: `B` as a rule.
+        letter: u8,
+        /// Its number.
+        code: u32,
+    },
     /// Wait for cycle start.
     Stop,
     /// Wait for cycle start when the operator has chosen to.

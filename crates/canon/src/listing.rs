@@ -114,6 +114,9 @@ pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
         Action::Coolant(Coolant::On) => out.extend_from_slice(b"coolant on"),
         Action::Coolant(Coolant::Off) => out.extend_from_slice(b"coolant off"),
         Action::Auxiliary { code } => out.extend_from_slice(format!("auxiliary {code}").as_bytes()),
+        Action::SecondAuxiliary { letter, code } => {
+            out.extend_from_slice(format!("auxiliary {}{code}", char::from(*letter)).as_bytes());
+        }
         Action::Stop => out.extend_from_slice(b"stop"),
         Action::OptionalStop => out.extend_from_slice(b"optional-stop"),
         Action::End => out.extend_from_slice(b"end"),

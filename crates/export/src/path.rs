@@ -199,6 +199,7 @@ impl PathRecorder {
             | Action::Spindle { .. }
             | Action::Coolant(_)
             | Action::Auxiliary { .. }
+            | Action::SecondAuxiliary { .. }
             | Action::Stop
             | Action::OptionalStop
             | Action::End

@@ -5,6 +5,9 @@
 //! one; by parameter up to three, of which stops and ends must stand alone. An unknown M is given on; it does not
 //! stop the program.
 //!
+//! The second auxiliary function (`B12`) is given on like an unknown M. A machine has it when its parameter (3460) was set:
+//! A, B, C or V; U and W stay increments.
+//!
 //! Source: the M functions that the control itself acts on and the order of actions in a block, both families.
 
 use turnwright_canon::{Action, Coolant, SpindleState};
@@ -12,6 +15,7 @@ use turnwright_control::policy::{AuxiliaryCombination, CallEntry, StoppingCodes}
 use turnwright_syntax::{Block, Word};
 
 use crate::Environment;
+use crate::functions::Function;
 use crate::machine::{BlockPlace, Core, SyncReason};
 use crate::report::Alarm;
 use crate::reset::Ending;
@@ -281,6 +285,25 @@ impl Core {
             return None;
         }
         self.macros.calls.subprogram(number)
+    }
+}
+
+/// The second auxiliary function: a word of the letter that a parameter names.
+impl Core {
+    /// Its letter, unless that names an axis of the machine or is a word of the function of the block.
+    #[cold]
+    pub(crate) fn second_auxiliary(&self, function: &Function) -> u32 {
+        self.settings.second_auxiliary & !(self.axes.letters | function.letters)
+    }
+
+    #[cold]
+    pub(crate) fn emit_second_auxiliary(&mut self, block: &Block) -> Result<(), Alarm> {
+        let is_second =
+            |word: &&Word| !word.comma && Block::bit(word.address) == self.settings.second_auxiliary;
+        let Some(word) = block.words.iter().rfind(is_second) else { return Ok(()) };
+        let code = self.whole(word, 99_999_999)?;
+        self.emit(Action::SecondAuxiliary { letter: word.address, code });
+        Ok(())
     }
 }
 

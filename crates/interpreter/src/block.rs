@@ -154,6 +154,9 @@ impl Core {
         if self.compensation.is_some() {
             other_letters |= self.wall_letters();
         }
+        let second = self.settings.second_auxiliary & block.present();
+        let second = if second == 0 { 0 } else { self.second_auxiliary(function) };
+        other_letters |= second;
         self.check_letters(block, function, other_letters)?;
         if self.axes.plane != Plane::Zx {
             self.refuse_cycle_plane(block, function)?;
@@ -165,6 +168,9 @@ impl Core {
             self.speed_and_tool(block, &codes, &auxiliary)?;
         }
         auxiliary.emit_before(self, block);
+        if second != 0 {
+            self.emit_second_auxiliary(block)?;
+        }
         let waiting_corner = self.corner.is_some();
         let mut moves = false;
         let call = |word, code, environment| Call { block, environment, code, word };

@@ -3,7 +3,7 @@
 use turnwright_control::policy::AxisWordConflict;
 use turnwright_diagnostics::Diagnostic;
 use turnwright_syntax::{Block, Word};
-use turnwright_units::{Length, Position, WorkTip};
+use turnwright_units::{LeastIncrement, Length, Position, WorkTip};
 
 use crate::machine::Core;
 use crate::report::Alarm;
@@ -73,23 +73,33 @@ impl Core {
     /// Warns about a length that looks as if its point were forgotten.
     #[inline]
     pub(crate) fn missing_point(&mut self, word: &Word) {
+        self.missing_point_of(word, self.modal.increment(&self.settings));
+    }
+
+    /// The same for a value of the offset tables.
+    pub(crate) fn missing_offset_point(&mut self, word: &Word) {
+        self.missing_point_of(word, self.offset_increment());
+    }
+
+    #[inline]
+    fn missing_point_of(&mut self, word: &Word, increment: LeastIncrement) {
         if let turnwright_syntax::Value::Number(number) = word.value
             && !number.has_point
             && !self.settings.is_calculator
             && number.digits != 0
         {
-            self.say_missing_point(word, number.digits);
+            self.say_missing_point(word, number.digits, increment);
         }
     }
 
     #[cold]
-    fn say_missing_point(&mut self, word: &Word, digits: i64) {
+    fn say_missing_point(&mut self, word: &Word, digits: i64, increment: LeastIncrement) {
         // Above this a value without a point is a length that somebody may mean.
         const SUSPICIOUS_BELOW: i64 = 1_000;
         if digits.abs() >= SUSPICIOUS_BELOW || self.already_said_at("number-without-point", word) {
             return;
         }
-        let value = self.modal.increment(&self.settings).nm() * digits;
+        let value = increment.nm() * digits;
         let quote = self.quote(word.start, word.end);
         let diagnostic = Diagnostic::warning("number-without-point")
             .at(self.place(word))

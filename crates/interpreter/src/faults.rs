@@ -5,7 +5,7 @@
 //! Source: words and numbers, several words with one address, both families.
 
 use turnwright_control::policy::{
-    NestedComment, ProgramNames, RepeatedAddress, RepeatedSpeedWord, UnnumberedProgram,
+    MacroNames, NestedComment, ProgramNames, RepeatedAddress, RepeatedSpeedWord, UnnumberedProgram,
 };
 use turnwright_diagnostics::{Diagnostic, Severity};
 use turnwright_syntax::{Block, ExtentKind, Fault, FaultKind, Value, Word};
@@ -19,6 +19,10 @@ impl Core {
         for fault in &block.faults {
             if fault.kind == FaultKind::ProgramName {
                 self.check_program_name(block, fault)?;
+                continue;
+            }
+            if fault.kind == FaultKind::IndirectAxis && self.control.policies.macro_names == MacroNames::Known
+            {
                 continue;
             }
             if let Some(word) = self.numbered_word(block, fault) {
@@ -103,6 +107,7 @@ impl Core {
             FaultKind::FullWidth => ("full-width-character", Warning),
             // Asked of the control before.
             FaultKind::ProgramName => ("illegal-address", Alarm),
+            FaultKind::IndirectAxis => ("macro-function-unavailable", Alarm),
         }
     }
 

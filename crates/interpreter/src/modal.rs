@@ -4,6 +4,7 @@ use turnwright_canon::{PathMode, SpindleState};
 use turnwright_control::policy::Policies;
 use turnwright_control::{Axis, Parameters};
 use turnwright_cycles::FlankInfeed;
+use turnwright_syntax::Block;
 use turnwright_units::{LeastIncrement, Length, Position, Radius, Rpm, SurfaceSpeed, WorkTip};
 
 use crate::axes::Plane;
@@ -137,6 +138,8 @@ pub(crate) struct Settings {
     pub(crate) several_auxiliary: bool,
     /// M codes behind which the control waits for the moves before it reads on, first and last of each range.
     pub(crate) unbuffered: Box<[(u32, u32)]>,
+    /// The letter of the second auxiliary function, as the bit of [`Block::present`]; 0 without.
+    pub(crate) second_auxiliary: u32,
     /// M99 is given out as well.
     pub(crate) gives_return_code: bool,
     /// Largest number of an M word.
@@ -292,6 +295,7 @@ impl Settings {
             duplicate_word_alarm: bit("duplicate-word-alarm"),
             several_auxiliary: bit("several-auxiliary-codes"),
             unbuffered: unbuffered(parameters),
+            second_auxiliary: second_auxiliary(parameters),
             gives_return_code: bit("return-code-to-machine"),
             auxiliary_max: 10u32.pow(count("auxiliary-digits").clamp(2, 8)) - 1,
             rpm_max: rpm("spindle-maximum-rpm"),
@@ -376,6 +380,13 @@ impl Settings {
             compensation: CompensationSettings::new(parameters, policies),
         }
     }
+}
+
+/// The bit of the letter of the second auxiliary function; 0 where the machine has none.
+fn second_auxiliary(parameters: &Parameters) -> u32 {
+    const NAME: &str = "second-auxiliary-letter";
+    let letter = parameters.value(NAME) as u8;
+    if parameters.is_stated(NAME) && b"ABCV".contains(&letter) { Block::bit(letter) } else { 0 }
 }
 
 /// The M codes that stop reading ahead: single ones, then ranges.

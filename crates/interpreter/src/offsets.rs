@@ -199,6 +199,8 @@ pub(crate) struct OffsetSettings {
     x_is_radius: bool,
     wear_x_is_radius: bool,
     pub(crate) converts_units: bool,
+    /// The increments of the tables, metric and inch, where they differ from those of the program.
+    increments: Option<(LeastIncrement, LeastIncrement)>,
     zero_row_shifts: bool,
     reset_takes_wear: bool,
     reset_takes_geometry: bool,
@@ -233,6 +235,11 @@ impl OffsetSettings {
             x_is_radius: bit("offset-in-radius"),
             wear_x_is_radius: bit("wear-in-radius"),
             converts_units: bit("convert-offsets"),
+            increments: match (bit("offset-increment-a"), bit("offset-increment-c")) {
+                (true, false) => Some((LeastIncrement::METRIC_A, LeastIncrement::INCH_A)),
+                (false, true) => Some((LeastIncrement::METRIC_C, LeastIncrement::INCH_C)),
+                (false, false) | (true, true) => None,
+            },
             zero_row_shifts: bit("offset-zero-shifts-work"),
             reset_takes_wear: bit("reset-clears-wear"),
             reset_takes_geometry: bit("reset-clears-geometry"),
@@ -257,6 +264,15 @@ impl OffsetSettings {
 }
 
 impl Core {
+    /// The least increment of the tables in the unit in force.
+    pub(crate) fn offset_increment(&self) -> LeastIncrement {
+        match self.settings.offsets.increments {
+            Some((_, inch)) if self.modal.is_inch => inch,
+            Some((metric, _)) => metric,
+            None => self.modal.increment(&self.settings),
+        }
+    }
+
     /// A value of the tables, as the screen shows it.
     pub(crate) fn offset_value(
         &self,

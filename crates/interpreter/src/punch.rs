@@ -17,7 +17,7 @@ use turnwright_control::{
     import_parameters,
 };
 use turnwright_diagnostics::{Diagnostic, SourceId};
-use turnwright_units::{Length, write_fixed};
+use turnwright_units::{LeastIncrement, Length, write_fixed};
 
 use crate::machine::{Interpreter, Options, Step};
 use crate::offsets::OffsetTable;
@@ -140,11 +140,12 @@ pub fn export_offsets(control: &Control, setup: &Setup) -> Result<String, DataFa
     for number in 1..=core.offsets.last_number() {
         for (table, target) in [(OffsetTable::Wear, number), (OffsetTable::Geometry, number + 10_000)] {
             let [x, y, z, radius] = core.offsets.values(table, number);
-            text.push_str(&format!("G10 P{target} X{}", interpreter.written(x)));
+            let written = |length| interpreter.written(length, core.offset_increment());
+            text.push_str(&format!("G10 P{target} X{}", written(x)));
             if has_y {
-                text.push_str(&format!(" Y{}", interpreter.written(y)));
+                text.push_str(&format!(" Y{}", written(y)));
             }
-            text.push_str(&format!(" Z{} R{}", interpreter.written(z), interpreter.written(radius)));
+            text.push_str(&format!(" Z{} R{}", written(z), written(radius)));
             if table == OffsetTable::Geometry {
                 text.push_str(&format!(" Q{}", core.offsets.tip(number)));
             }
@@ -163,7 +164,8 @@ pub fn export_work_zeros(control: &Control, setup: &Setup) -> Result<String, Dat
     let mut text = String::new();
     let mut line = |head: &str, zero: WorkZero| {
         let pair = interpreter.core.zeros.pair(zero);
-        let (x, z) = (interpreter.written(pair[0]), interpreter.written(pair[1]));
+        let increment = interpreter.core.modal.increment(&interpreter.core.settings);
+        let (x, z) = (interpreter.written(pair[0], increment), interpreter.written(pair[1], increment));
         text.push_str(&format!("{head} X{x} Z{z}\n"));
     };
     line("G10 P0", WorkZero::WorkpieceShift);
@@ -188,14 +190,10 @@ fn open(control: &Control, setup: &Setup) -> Result<Interpreter, DataFault> {
 
 impl Interpreter {
     /// A length as a word has it, in the unit of power-on.
-    fn written(&self, length: Length) -> String {
-        let settings = &self.core.settings;
-        let places = settings.metric_decimals;
-        let (increment, decimals) = if self.core.modal.is_inch {
-            (settings.inch_increment.nm(), places + 1)
-        } else {
-            (settings.metric_increment.nm(), places)
-        };
+    fn written(&self, length: Length, increment: LeastIncrement) -> String {
+        let increment = increment.nm();
+        let unit = if self.core.modal.is_inch { 25_400_000 } else { 1_000_000 };
+        let decimals = (unit / increment).ilog10() as u8;
         let mut digits = Vec::new();
         if self.core.modal.is_inch || length.nm() % increment == 0 {
             write_fixed(&mut digits, (length.nm() + increment / 2 * length.signum()) / increment, decimals);
@@ -305,6 +303,17 @@ mod tests {
                 assert!((offset.geometry.x - again.offsets[name].geometry.x).abs() < 1e-9, "{name}");
             }
         }
+    }
+
+    #[test]
+    fn offsets_keep_the_digits_of_their_own_increment() {
+        let mut control = control();
+        control.parameters.set_by_name("offset-increment-c", 1.0);
+        let mut setup = Setup::default();
+        import_data(&control, &mut setup, b"G10 P1 X15 Z-0.0002 R0\n").expect("a data text");
+        assert_eq!(setup.offsets["1"].wear.x, 0.001_5);
+        let text = "G10 P1 X0.0015 Z-0.0002 R0.\nG10 P10001 X0. Z0. R0. Q0\n";
+        assert_eq!(export_offsets(&control, &setup), Ok(text.to_string()));
     }
 
     #[test]

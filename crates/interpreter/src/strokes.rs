@@ -342,8 +342,16 @@ impl Core {
         self.finish(diagnostic.with("limit", limit))
     }
 
-    /// The word of the block in work that sends an axis somewhere.
+    /// The word of the block in work that sends an axis somewhere; `None` for a move of an earlier line, which is no
+    /// longer at hand.
     fn place_of_axis(&self, axis: Axis) -> Option<Place> {
+        let line = match self.cache.current {
+            Some(id) => (self.cache.place(id).source, self.cache.place(id).line_offset),
+            None => (self.text.source(), self.line.offset),
+        };
+        if line != (self.at.source, self.at.line_offset) {
+            return None;
+        }
         let letters = match axis {
             Axis::X => [b'X', b'U'],
             Axis::Z => [b'Z', b'W'],

@@ -78,7 +78,14 @@ impl Core {
         {
             return Ok(Length::from_nm(nm));
         }
-        self.length_of(word, number, counts)
+        self.length_of(word, number, counts, self.modal.increment(&self.settings))
+    }
+
+    /// A value of the offset tables, which may have an increment of their own.
+    pub(crate) fn offset_length(&self, word: &Word) -> Result<Length, Alarm> {
+        let number = self.number(word)?;
+        let counts = !(number.has_point || self.settings.is_calculator);
+        self.length_of(word, number, counts, self.offset_increment())
     }
 
     /// Millimetres in nanometres where little can go wrong; [`Core::length_of`] does the rest.
@@ -122,8 +129,14 @@ impl Core {
 
     /// `counts`: the number counts least increments.
     #[cold]
-    fn length_of(&self, word: &Word, number: Decimal, counts: bool) -> Result<Length, Alarm> {
-        let increment = self.modal.increment(&self.settings).nm();
+    fn length_of(
+        &self,
+        word: &Word,
+        number: Decimal,
+        counts: bool,
+        increment: LeastIncrement,
+    ) -> Result<Length, Alarm> {
+        let increment = increment.nm();
         let digits_max = POWER[usize::from(self.control.limits.number_digits.min(9))];
         if number.digits.abs() >= digits_max && !number.is_computed() {
             return Err(self.alarm("number-too-long", word));
@@ -185,7 +198,7 @@ impl Core {
         if number.has_point && !in_mm {
             return Err(self.alarm("point-not-allowed", word));
         }
-        self.length_of(word, number, !in_mm)
+        self.length_of(word, number, !in_mm, self.modal.increment(&self.settings))
     }
 
     /// A whole number without sign and point, at most `max`.

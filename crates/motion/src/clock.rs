@@ -184,7 +184,9 @@ impl Clock {
                 }
                 self.still(Kind::ToolChange, if turns { self.rates.tool_change_s } else { 0.0 })
             }
-            Action::Coolant(_) | Action::Auxiliary { .. } => self.still(Kind::Other, self.rates.auxiliary_s),
+            Action::Coolant(_) | Action::Auxiliary { .. } | Action::SecondAuxiliary { .. } => {
+                self.still(Kind::Other, self.rates.auxiliary_s)
+            }
             Action::Relocate { to, others } => {
                 self.position = *to;
                 if let Some(others) = others {

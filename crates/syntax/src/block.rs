@@ -64,6 +64,8 @@ pub enum FaultKind {
     FullWidth,
     /// A program name in angle brackets, which only some controls know.
     ProgramName,
+    /// An axis named by its number (`AX[1]=5.`), which only some controls know.
+    IndirectAxis,
 }
 
 impl FaultKind {
@@ -233,6 +235,16 @@ impl Block {
             self.close_gaps();
         }
         Ok(())
+    }
+
+    /// Gives a word another letter: that of the axis whose number it was written with.
+    #[cold]
+    pub fn rename(&mut self, place: usize, letter: u8) {
+        self.words[place].address = letter;
+        (self.present, self.has_comma, self.copy_of) = (0, false, None);
+        for place in 0..self.words.len() {
+            self.note(self.words[place], place);
+        }
     }
 
     /// Drops the words that have no value.

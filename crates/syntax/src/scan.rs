@@ -183,6 +183,9 @@ impl Scanner<'_> {
                     self.macro_statement();
                     return false;
                 }
+                if address == b'A' && !comma && self.indirect_axis() {
+                    return true;
+                }
                 let letter_o = matches!(next, b'O' | b'o') && address != b'O' && address != b'N';
                 self.missing(address, comma, start, letter_o);
             }
@@ -340,6 +343,40 @@ impl Scanner<'_> {
                 end
             }
         }
+    }
+
+    /// `AX[n]=value`: an axis by its number. Until the number is known it is a word of A, and a fault that says so.
+    #[cold]
+    fn indirect_axis(&mut self) -> bool {
+        const HEAD: &[u8] = b"AX[";
+        let (line, start) = (self.line, self.at);
+        let is_named = line[start..].get(..HEAD.len()).is_some_and(|head| head.eq_ignore_ascii_case(HEAD));
+        let Some(closed) = is_named.then(|| closing_bracket(line, start + HEAD.len() - 1)).flatten() else {
+            return false;
+        };
+        let skip_blanks = |mut at: usize| {
+            while let Some(b' ' | b'\t') = line.get(at) {
+                at += 1;
+            }
+            at
+        };
+        let equals = skip_blanks(closed + 1);
+        if line.get(equals) != Some(&b'=') {
+            return false;
+        }
+        let from = skip_blanks(equals + 1);
+        match line.get(from) {
+            Some(b'0'..=b'9' | b'.' | b'-' | b'+') => self.number(b'A', false, start, from),
+            Some(b'#' | b'[') => self.expression_value(b'A', false, start, from, from),
+            _ => {
+                self.fault(FaultKind::AddressWithoutValue, start, equals + 1);
+                self.push(b'A', false, start, equals + 1, Value::Missing);
+                self.at = equals + 1;
+            }
+        }
+        self.fault(FaultKind::IndirectAxis, start, self.at);
+        self.block.computes = true;
+        true
     }
 
     fn keyword(&self) -> bool {
@@ -540,6 +577,23 @@ fn run_of_digits(mut value: u64, mut text: &[u8]) -> (u64, &[u8]) {
     (value, text)
 }
 
+/// Where the bracket that opens at `open` closes.
+fn closing_bracket(line: &[u8], open: usize) -> Option<usize> {
+    let mut depth = 0usize;
+    for (at, byte) in line.iter().enumerate().skip(open) {
+        match byte {
+            b'[' => depth += 1,
+            b']' => depth -= 1,
+            b'(' | b';' => return None,
+            _ => {}
+        }
+        if depth == 0 {
+            return Some(at);
+        }
+    }
+    None
+}
+
 /// The ASCII mark that a full-width character (UTF-8 or GBK) stands for, and its length in bytes.
 fn full_width_at(text: &[u8]) -> Option<(u8, usize)> {
     match text {
@@ -571,7 +625,7 @@ fn reads_like_a_block(text: &[u8]) -> bool {
     scanner.run();
     !block.is_empty()
         && block.macro_statement.is_none_or(|(start, end)| crate::parse_statement(text, start..end).is_ok())
-        && block.faults.iter().all(|fault| fault.kind.is_harmless())
+        && block.faults.iter().all(|fault| fault.kind.is_harmless() || fault.kind == FaultKind::IndirectAxis)
 }
 
 #[cfg(test)]
@@ -674,6 +728,14 @@ mod tests {
         assert_eq!(block.macro_statement, Some((0, 7)));
         assert_eq!(words("X-#1 Z[#2+1] F##3"), "X-#1 Z[#2+1] F##3");
         assert_eq!(words("X[#2"), "X[#2 !StrayBracket@1..4");
+    }
+
+    #[test]
+    fn an_axis_by_its_number_is_one_word() {
+        assert_eq!(words("G0 AX[#1]=-5. Z2."), "G0e-0 A-5e-0. Z2e-0. !IndirectAxis@3..13");
+        assert_eq!(words("ax[1] = [#2+1]"), "A[#2+1] !IndirectAxis@0..14");
+        assert_eq!(words("AX[1]= F1"), "A? F1e-0 !AddressWithoutValue@0..6 !IndirectAxis@0..6");
+        assert_eq!(words("AX[1] F1"), "A? X[1] F1e-0 !AddressWithoutValue@0..1");
     }
 
     #[test]

@@ -136,6 +136,11 @@ pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
         Action::Coolant(Coolant::On) => out.extend_from_slice(br#"{"op":"coolant","on":true"#),
         Action::Coolant(Coolant::Off) => out.extend_from_slice(br#"{"op":"coolant","on":false"#),
         Action::Auxiliary { code } => write_number(out, br#"{"op":"m","code":"#, *code),
+        Action::SecondAuxiliary { letter, code } => {
+            out.extend_from_slice(br#"{"op":"second-auxiliary","letter":"#);
+            write_json_string(out, char::from(*letter).encode_utf8(&mut [0; 4]));
+            write_number(out, br#","code":"#, *code);
+        }
         Action::Stop => out.extend_from_slice(br#"{"op":"stop""#),
         Action::OptionalStop => out.extend_from_slice(br#"{"op":"optional-stop""#),
         Action::End => out.extend_from_slice(br#"{"op":"end""#),
@@ -587,6 +592,10 @@ mod tests {
             (Action::Tool { tool: 1, offset: 11 }, r#"{"op":"tool","tool":1,"offset":11,"#),
             (Action::Coolant(Coolant::On), r#"{"op":"coolant","on":true,"#),
             (Action::Coolant(Coolant::Off), r#"{"op":"coolant","on":false,"#),
+            (
+                Action::SecondAuxiliary { letter: b'B', code: 12 },
+                r#"{"op":"second-auxiliary","letter":"B","code":12,"#,
+            ),
             (Action::Auxiliary { code: 23 }, r#"{"op":"m","code":23,"#),
             (Action::Stop, r#"{"op":"stop","#),
             (Action::OptionalStop, r#"{"op":"optional-stop","#),

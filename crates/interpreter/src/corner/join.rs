@@ -174,7 +174,7 @@ impl Core {
             Err(CornerFault::TooLong) => {
                 let diagnostic = Diagnostic::alarm("corner-longer-than-move").at(word.place);
                 let diagnostic = diagnostic.with("word", word.quote.clone());
-                Err(self.finish(diagnostic.near(second.place, "next-block")))
+                Err(self.finish(diagnostic.near(second.place(), "next-block")))
             }
         }
     }
@@ -189,7 +189,7 @@ impl Core {
     fn check_perpendicular(&self, first: &Element, word: &CornerWord, second: &Element) -> Result<(), Alarm> {
         let refuse = |key| {
             let diagnostic = Diagnostic::alarm(key).at(word.place).with("word", word.quote.clone());
-            Err(self.finish(diagnostic.near(second.place, "next-block")))
+            Err(self.finish(diagnostic.near(second.place(), "next-block")))
         };
         let Some(axis) = Axis::of(first) else { return refuse("taper-in-corner-block") };
         let next = axis.other();

@@ -26,7 +26,7 @@ use turnwright_units::{Feed, Position, WorkTip};
 pub(crate) use words::LETTERS;
 use words::{AngleWord, CornerWord, PathWords, Rule};
 
-use crate::machine::Core;
+use crate::machine::{BlockPlace, Core};
 use crate::plane::point;
 use crate::report::Alarm;
 
@@ -67,9 +67,8 @@ struct Element {
     names: (bool, bool),
     angle: Option<AngleWord>,
     corner: Option<CornerWord>,
-    line: u32,
-    sequence: Option<u32>,
-    place: Place,
+    /// Its block.
+    at: BlockPlace,
     /// What later blocks asked for besides moves.
     held: Vec<Command>,
 }
@@ -101,12 +100,17 @@ impl OpenPath {
 }
 
 impl Element {
+    /// The place of its block.
+    fn place(&self) -> Place {
+        self.at.span(self.at.first_byte, self.at.last_byte)
+    }
+
     /// The words that keep the element open, for messages.
     fn words(&self) -> (Place, String) {
         match (&self.corner, &self.angle) {
             (Some(corner), _) => (corner.place, corner.quote.clone()),
             (None, Some(angle)) => (angle.place, angle.quote.clone()),
-            (None, None) => (self.place, String::new()),
+            (None, None) => (self.place(), String::new()),
         }
     }
 
@@ -228,9 +232,7 @@ impl Core {
             names: (block.has(b'X') || block.has(b'U'), block.has(b'Z') || block.has(b'W')),
             angle: None,
             corner: None,
-            line: self.at.line,
-            sequence: self.at.sequence,
-            place: self.block_place(),
+            at: self.at,
             held: Vec::new(),
         }
     }
@@ -378,8 +380,7 @@ impl Core {
             None => None,
         };
         // Both moves belong to the block that asked for them.
-        let (here, sequence) = (self.at.line, self.at.sequence);
-        (self.at.line, self.at.sequence) = (first.line, first.sequence);
+        let here = std::mem::replace(&mut self.at, first.at);
         match corner {
             None => {
                 self.emit_move(first.to, first.motion.action(first.to, first.shape.clone()))?;
@@ -393,7 +394,7 @@ impl Core {
                 second.start = corner.to;
             }
         }
-        (self.at.line, self.at.sequence) = (here, sequence);
+        self.at = here;
         for command in first.held.drain(..) {
             self.pass_on(command);
         }

@@ -2,7 +2,7 @@
 //!
 //! `G10 P_ X(U)_ Y(V)_ Z(W)_ R(C)_ Q_` writes a tool offset: P1 onward the wear, 10000 more the geometry. X, Y,
 //! Z and the nose radius R replace the value, U, V, W and C add to it; Q is the direction of the tip, the same
-//! for both tables. Lengths follow the unit and the decimal rule of the program; X is what the offset screen
+//! for both tables. The tables may have an increment of their own (5042). Lengths follow the unit and the decimal rule of the program; X is what the offset screen
 //! shows, a diameter by default.
 //!
 //! The new values act with the next T word, or at once by parameter (5001#6). P0 is the workpiece shift.
@@ -109,8 +109,8 @@ impl Core {
             }
             is_empty = false;
             let (word, is_increment) = self.axis_word(block, absolute, increment)?;
-            let length = self.length(word)?;
-            self.missing_point(word);
+            let length = self.offset_length(word)?;
+            self.missing_offset_point(word);
             let value = if is_increment {
                 self.increased_offset(table, field, number, length).map_err(|fault| at(self, fault, word))?
             } else {

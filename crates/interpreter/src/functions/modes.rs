@@ -66,9 +66,9 @@ fn units(core: &mut Core, call: &mut Call<'_>, is_inch: bool) -> Result<(), Alar
     {
         core.warn("unit-change-late", word);
     }
-    let from = core.modal.increment(&core.settings);
+    let from = core.offset_increment();
     core.modal.is_inch = is_inch;
-    let to = core.modal.increment(&core.settings);
+    let to = core.offset_increment();
     if from != to && !core.settings.offsets.converts_units && core.has_offset_values() {
         core.warn_once("offsets-read-in-other-unit");
         core.reread_offsets(from, to);

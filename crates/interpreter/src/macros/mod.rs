@@ -179,9 +179,13 @@ impl Core {
     ) -> Result<(), Halt> {
         let mark = self.macros.machine.mark();
         let mut codes = std::mem::take(&mut self.macros.codes);
-        let result = match self.compile_words(block, &mut codes) {
+        let named = match block.faults.is_empty() {
+            true => Ok(()),
+            false => self.name_axes(block, environment),
+        };
+        let result = match named.and_then(|()| Ok(self.compile_words(block, &mut codes)?)) {
             Ok(()) => block.resolve(|word, place| self.word_value(word, codes[place], environment)),
-            Err(alarm) => Err(alarm.into()),
+            Err(halt) => Err(halt),
         };
         self.macros.codes = codes;
         self.macros.machine.forget(mark);

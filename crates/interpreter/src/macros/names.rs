@@ -2,15 +2,17 @@
 //!
 //! `[#_ABSIO[1]]` is `#5001`, `[#_DATE]` is `#3011`: a name stands for a number, a subscript counts from it. `PRM[n]`
 //! is the value of a parameter, `PRM[n,b]` one of its bits, `/[a]` behind either picks the axis. `AXNUM[Z]` is the number
-//! that an axis has in subscripts. Which names exist is from memory; they are those of variables that exist here.
+//! that an axis has in subscripts, and `AX[n]=value` is the word of the axis with a number. Which names exist is from memory; they are those of variables that exist here.
 //!
 //! Source: functions of custom macro, newest lathe controls.
 
 use turnwright_control::Axis as ParameterAxis;
 use turnwright_diagnostics::Diagnostic;
+use turnwright_syntax::{Block, Fault, FaultKind, parse_expression};
 
 use super::system::Axis;
 use super::variables::is_null;
+use crate::Environment;
 use crate::machine::{Core, Halt};
 
 /// Names, the number that they stand for, and whether a subscript is added to it.
@@ -122,6 +124,51 @@ impl Core {
             Some(place) => Ok(f64::from(place + 1)),
             None => Err(self.parameter_fault("illegal-address")),
         }
+    }
+
+    /// Gives words of axes that are named by number (`AX[n]=value`) their letters.
+    #[cold]
+    pub(super) fn name_axes(
+        &mut self,
+        block: &mut Block,
+        environment: &mut dyn Environment,
+    ) -> Result<(), Halt> {
+        for place in 0..block.words.len() {
+            let word = block.words[place];
+            let is_indirect =
+                |fault: &&Fault| fault.kind == FaultKind::IndirectAxis && fault.start == word.start;
+            if block.faults.iter().find(is_indirect).is_none() {
+                continue;
+            }
+            let line = self.line_bytes();
+            let text = &line[word.start as usize..word.end as usize];
+            // The reader saw the brackets and the sign behind them.
+            let equals = text.iter().position(|byte| *byte == b'=').unwrap_or(text.len());
+            let bracket = |wanted| text[..equals].iter().position(|byte| *byte == wanted).unwrap_or(0) as u32;
+            let last = text[..equals].iter().rposition(|byte| *byte == b']').unwrap_or(0) as u32;
+            let range = word.start + bracket(b'[')..word.start + last + 1;
+            let expression = match parse_expression(line, range.clone()) {
+                Ok(expression) => expression,
+                Err(fault) => return Err(self.expression_fault(&fault, range).into()),
+            };
+            let code = self.macros.machine.compile(&expression, &self.macros.variables, true);
+            let code = code.map_err(|(fault, place)| self.code_fault(fault, place))?;
+            let number = self.evaluate_all(code, None, environment)?;
+            let axis = match number {
+                _ if is_null(number) || number.fract() != 0.0 || !(1.0..=8.0).contains(&number) => Axis::None,
+                _ => self.position_axis(number as u32 - 1),
+            };
+            let letter = match axis {
+                Axis::X => b'X',
+                Axis::Z => b'Z',
+                Axis::C => b'C',
+                Axis::Y => b'Y',
+                Axis::B => b'B',
+                Axis::None => return Err(self.alarm("illegal-address", &word).into()),
+            };
+            block.rename(place, letter);
+        }
+        Ok(())
     }
 
     fn parameter_fault(&self, key: &'static str) -> Halt {

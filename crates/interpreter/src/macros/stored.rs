@@ -130,7 +130,10 @@ impl Core {
     /// Stores a value; `None` when the number means none.
     pub(super) fn write_stored(&mut self, variable: u32, value: f64) -> Option<Written> {
         let stored = self.stored(variable)?;
-        let increment = self.modal.increment(&self.settings);
+        let increment = match stored {
+            Stored::Offset(..) => self.offset_increment(),
+            _ => self.modal.increment(&self.settings),
+        };
         let length = Length::from_mm_rounded(value * self.unit_mm(), increment);
         let is_count = (0.0..=f64::from(u32::MAX)).contains(&value.round());
         Some(match stored {
