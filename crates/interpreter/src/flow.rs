@@ -250,6 +250,7 @@ impl Core {
                 Ok(())
             }
             Flow::End => {
+                self.warn_of_compensation(word.as_ref());
                 self.end_compensation()?;
                 self.emit(Action::End);
                 self.is_over = true;
@@ -513,6 +514,7 @@ impl Core {
                 return self.jump_to(&word, environment);
             }
             // In the main program M99 starts over: one round is shown.
+            self.stop_reading_ahead()?;
             self.warn_block("main-program-repeats");
             self.emit(Action::End);
             self.is_over = true;
@@ -589,6 +591,7 @@ impl Core {
             return Err(self.figure_without_end());
         }
         if self.settings.end_of_record_allowed && self.frames.is_empty() {
+            self.warn_of_compensation(None);
             self.end_compensation()?;
             self.emit(Action::End);
             self.is_over = true;
@@ -612,7 +615,12 @@ impl Core {
         // Each axis goes back at its own rate, whatever the parameter for rapid moves says.
         self.modal.position = home;
         let back = Action::Rapid { to: home, path: RapidPath::EachAxis, others: None };
-        self.without_vector(|core| core.emit_move(home, back))?;
+        if self.tip == home {
+            self.suspend_compensation()?;
+        } else {
+            self.without_vector(|core| core.emit_move(home, back))?;
+        }
+        self.start_up_again();
         self.in_cycle = None;
         if let Some(frame) = self.frames.pop() {
             if let FrameKind::Finish { outside: Some(outside), .. } = frame.kind {

@@ -283,7 +283,9 @@ impl Core {
         }
         // The first move of the cycle takes the whole movement of the offset along.
         self.untaken = None;
-        self.suspend_compensation()?;
+        if !matches!(moves, CycleMoves::ThreadOnce(_)) {
+            self.suspend_compensation()?;
+        }
         let stops_behind = self.stop_unit(&moves);
         self.active = Some(ActiveCycle {
             moves,
@@ -377,12 +379,13 @@ impl Core {
             cycle: Some(CycleOrigin { label: CycleLabel(cycle.code), pass, phase: step.phase }),
             runs_on,
         };
-        let action = step.action;
+        let mut action = step.action;
+        let keeps_vector = matches!(cycle.moves, CycleMoves::ThreadOnce(_));
         if let Some(to) = action.end_point() {
             let from = std::mem::replace(&mut self.tip, to);
             self.modal.position = to;
             if self.looks_at_moves {
-                self.follow_plain(to);
+                let from = self.follow_cycle(from, &mut action, keeps_vector);
                 let nose = self.compensation.is_some().then(|| self.nose());
                 self.give(from, action, origin, nose)?;
                 return Ok(None);

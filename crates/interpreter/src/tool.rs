@@ -44,6 +44,9 @@ impl Core {
         if offset.max(geometry) > self.control.limits.offset_number_max {
             return Err(self.alarm("offset-number-illegal", word));
         }
+        if tool != self.modal.tool {
+            self.warn_of_compensation(Some(word));
+        }
         self.modal.tool = tool;
         self.modal.offset = offset;
         self.modal.geometry = geometry;

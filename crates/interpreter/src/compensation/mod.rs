@@ -13,9 +13,10 @@
 //! itself. Geometry computes in millimetres from the programmed points; each point given out is rounded once.
 //!
 //! **Start and end.** The first straight move behind G41 or G42 leads onto the path, the first behind G40 off it. Ways
-//! to reference points and machine places, and whatever moves the work zero, let go of the vector: the move before
-//! them (or to the intermediate point) ends on the contour, the next one leads back to the path. Cycles other than the
-//! finishing cycle run without it. Threads keep the vector that they find.
+//! to reference points and machine places let go of the vector: before them the nose stands square to the end of the path,
+//! and they (or their way to the intermediate point) lead off it. Whatever moves the work zero lets go as well: the move
+//! before it ends on the contour. The next move leads back to the path, or behind G40 none does. Cycles other than the
+//! finishing cycle run without the vector; threads and the thread cutting cycle keep the one that they find.
 //!
 //! **Interference.** A move whose nose centre would run backwards loses the inner vectors of its joints one pair after
 //! the other; if that does not help the control stops before the move.
@@ -31,6 +32,7 @@ use turnwright_canon::{Action, Command, Origin, Shape};
 use turnwright_control::policy::{CompensationGap, RoughingCompensation};
 use turnwright_diagnostics::Diagnostic;
 use turnwright_geometry::{Joint, Offset, Segment, Side, Vector};
+use turnwright_syntax::Word;
 use turnwright_units::{Displacement, Position, WorkTip};
 
 use self::element::{Element, Role};
@@ -181,7 +183,10 @@ impl Core {
     pub(crate) fn come_back_to(&mut self, outside: Outside) {
         self.compensation = outside.path;
         self.modal.in_force.codes[COMPENSATION_GROUP] = outside.code;
-        self.follow_plain(self.tip);
+        let tip = self.tip;
+        if let Some(path) = &mut self.compensation {
+            path.stands = tip;
+        }
         self.look_at_moves();
     }
 
@@ -241,11 +246,19 @@ impl Core {
         }
     }
 
-    /// A move of a cycle, which knows nothing of compensation, has gone to a place.
-    pub(crate) fn follow_plain(&mut self, to: Position<WorkTip>) {
-        if let Some(path) = &mut self.compensation {
-            path.stands = to;
-        }
+    /// A move of a cycle, which knows nothing of compensation, from `from`; a thread keeps the vector. Gives where it
+    /// really begins.
+    pub(crate) fn follow_cycle(
+        &mut self,
+        from: Position<WorkTip>,
+        action: &mut Action,
+        keeps_vector: bool,
+    ) -> Position<WorkTip> {
+        let (Some(path), Some(to)) = (&mut self.compensation, action.end_point()) else { return from };
+        let from = if keeps_vector { from } else { path.stands };
+        let to = to + (path.stands - from);
+        element::move_end(action, to);
+        std::mem::replace(&mut path.stands, to)
     }
 
     /// Takes a move from `from`, the end of the one before, to the programmed place.
@@ -346,6 +359,9 @@ impl Core {
 
     /// Takes a part of the contour in, and gives out the one before it.
     fn add(&mut self, path: &mut Compensation, mut new: Element) -> Result<(), Alarm> {
+        if new.role == Role::Start && new.nose.is_unset() {
+            self.warn_block("compensation-without-radius");
+        }
         let has_vector = path.state == State::Following;
         self.shift_to(path, &mut new)?;
         self.check_element(&mut new)?;
@@ -372,6 +388,7 @@ impl Core {
                 path.start = None;
                 (path.state, path.taking) = match role {
                     Role::End => (State::Starting, path.taking),
+                    _ if path.side.is_none() => (State::Starting, Taking::Plain),
                     _ if has_vector => (State::Suspended, Taking::Plain),
                     _ => (path.state, Taking::Plain),
                 };
@@ -443,7 +460,7 @@ impl Core {
             (Role::Start, Role::Contour) if before.asked == new.asked => {
                 offset.start_joint(one, other, start_up, &rules)
             }
-            (Role::Start, Role::End | Role::LettingGo) => Joint::single(offset.at_end(one)),
+            (Role::Start, Role::End) | (_, Role::LettingGo) => Joint::single(offset.at_end(one)),
             (_, Role::End) => match path.wall {
                 Some(wall) => offset.wall_joint(one, wall, &rules),
                 None => offset.end_joint(one, other, start_up, &rules),
@@ -552,12 +569,37 @@ impl Core {
         if let Some(before) = path.waiting.take() {
             result = self.settle(&mut path, before, None);
         }
+        let ends = path.side.is_none() && result.is_ok();
         if path.state == State::Following {
             path.state = State::Suspended;
         }
         path.start = None;
-        self.compensation = Some(path);
+        self.compensation = Some(path).filter(|_| !ends);
+        self.look_at_moves();
         result
+    }
+
+    /// The vector was let go; the next straight move leads onto the path as if compensation began.
+    pub(crate) fn start_up_again(&mut self) {
+        if let Some(path) = self.compensation.as_mut().filter(|path| path.state == State::Suspended) {
+            path.state = State::Starting;
+        }
+    }
+
+    /// The program leaves the path while compensation is on.
+    pub(crate) fn warn_of_compensation(&mut self, word: Option<&Word>) {
+        if self.compensation.as_ref().is_none_or(|path| path.side.is_none()) {
+            return;
+        }
+        match word {
+            Some(word) => self.warn("compensation-left-on", word),
+            None => self.warn_block("compensation-left-on"),
+        }
+    }
+
+    /// A move in work is part of the compensated contour.
+    pub(crate) fn follows_compensated(&self) -> bool {
+        self.compensation.as_ref().is_some_and(|path| path.side.is_some() && path.state != State::Starting)
     }
 
     /// Runs moves without compensation: the first of them lets go of the vector.
@@ -632,7 +674,12 @@ impl Core {
             return Ok(());
         }
         match self.control.policies.compensation_gap {
-            CompensationGap::Square => self.stop_reading_ahead(),
+            CompensationGap::Square => {
+                if path.waiting.is_some() {
+                    self.warn_block("compensation-read-ahead-ends");
+                }
+                self.stop_reading_ahead()
+            }
             CompensationGap::Alarm => Err(self.alarm_block("too-many-blocks-without-move")),
         }
     }

@@ -41,6 +41,11 @@ impl Nose {
         Displacement::new(Radius(radius.times(x)), radius.times(z))
     }
 
+    /// It has no radius or no tip number: compensation changes nothing, or takes the centre for the tip.
+    pub(crate) const fn is_unset(self) -> bool {
+        self.radius.is_zero() || self.tip == 0
+    }
+
     /// The centre while the tip is at a place.
     pub(crate) fn centre(self, tip: Position<WorkTip>) -> Position<WorkNose> {
         let way = self.to_tip();

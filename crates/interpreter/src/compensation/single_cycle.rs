@@ -1,6 +1,6 @@
-//! Nose compensation of the turning and facing cycles.
+//! Nose compensation of the turning and facing cycles, and of the thread cutting cycle.
 //!
-//! Each of their four moves is shifted by a fixed vector. Those along the axes are cut right by the imaginary tip as
+//! A thread keeps the vector that it finds, through all moves of its cycle, and no joints are made. Of the others each of their four moves is shifted by a fixed vector. Those along the axes are cut right by the imaginary tip as
 //! they are; the taper is shifted so far along the axis of the infeed that the nose touches it from the side of the start
 //! point. The ways between them stay where they were, and no joints are inserted.
 //!
@@ -19,7 +19,39 @@ use crate::machine::Core;
 use crate::plane::point;
 use crate::report::Alarm;
 
+/// The cut of a single cycle.
+fn cut(start: Position<WorkTip>, first: FirstAxis, end: Position<WorkTip>, taper: Length) -> Segment {
+    let cut_start = match first {
+        FirstAxis::X => Position::new(end.x + Radius(taper), start.z),
+        FirstAxis::Z => Position::new(start.x, end.z + taper),
+    };
+    Segment { start: point(cut_start), end: point(end), bend: None }
+}
+
 impl Core {
+    /// Before the thread cutting cycle: the nose stands square to the move before it, and stays so.
+    pub(crate) fn keep_vector(
+        &mut self,
+        call: &Call<'_>,
+        first: FirstAxis,
+        end: Position<WorkTip>,
+        taper: Length,
+    ) -> Result<(), Alarm> {
+        let Some(mut path) = self.compensation.take() else { return Ok(()) };
+        let is_on = path.side.is_some();
+        let beside = cut(self.modal.position, first, end, taper);
+        let result = if is_on { self.square_off(&mut path, Some(&beside)) } else { Ok(()) };
+        self.compensation = Some(path);
+        result?;
+        if !is_on {
+            return self.suspend_compensation();
+        }
+        if call.word.is_some() {
+            self.warn_block("thread-in-compensation");
+        }
+        Ok(())
+    }
+
     /// Where the cut of a turning or facing cycle ends, with its taper touched by the nose.
     pub(crate) fn beside_taper(
         &self,
@@ -36,11 +68,7 @@ impl Core {
             return Ok(end);
         }
         let start = self.modal.position;
-        let cut_start = match first {
-            FirstAxis::X => Position::new(end.x + Radius(taper), start.z),
-            FirstAxis::Z => Position::new(start.x, end.z + taper),
-        };
-        let cut = Segment { start: point(cut_start), end: point(end), bend: None };
+        let cut = cut(start, first, end, taper);
         let along_first = |x: f64, z: f64| if first == FirstAxis::X { x } else { z };
         let to_start = along_first((start.x - end.x).to_mm(), (start.z - end.z).to_mm());
         let square = [Side::Left, Side::Right]

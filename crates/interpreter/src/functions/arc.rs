@@ -186,7 +186,11 @@ impl Core {
         let word = call.block.word(b'I').or(call.block.word(b'K'));
         let Some(word) = word.copied() else { return Ok(()) };
         if x.0.is_zero() && z.is_zero() {
-            return Err(self.arc_alarm(&word, 0.0));
+            return Err(if self.follows_compensated() {
+                self.alarm("compensated-arc-interferes", &word)
+            } else {
+                self.arc_alarm(&word, 0.0)
+            });
         }
         let centre = Position::new(arc.from.x + x, arc.from.z + z);
         let at_start = point(centre).distance(point(arc.from));

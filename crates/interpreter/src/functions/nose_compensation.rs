@@ -9,6 +9,9 @@
 //! `G40`: the next straight move leads off the path, to the programmed point. `G40 X_ Z_ I_ K_` names the direction of
 //! a wall, I as a radius: the path is left where it meets the wall. Program end and reset cancel without a move.
 //!
+//! Warnings: the nose has no radius or no tip number; the program ends, calls another tool or goes to a reference point
+//! with compensation on; so many blocks without a move that the next one is not seen.
+//!
 //! In the figure of a roughing cycle the codes act where a policy says so, else only when it is finished.
 //!
 //! A radius below zero exchanges the sides, or is refused, by policy. Compensation works in the turning plane.

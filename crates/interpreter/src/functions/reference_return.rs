@@ -155,6 +155,7 @@ impl Core {
             Some(self.homing.by_way_of.map_or(by_way_of, |before| named(present, by_way_of, before)));
         let home = self.to_work(self.zeros.reference[number]);
         let home = named(present, home, by_way_of);
+        self.warn_of_compensation(None);
         // Both legs are non-linear whatever the parameter for positioning says.
         let others_by_way_of = self.other_ends(block)?;
         let others_home = self.other_reference(number, &others_by_way_of);

@@ -100,6 +100,7 @@ fn thread_cycle(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     if cycle.run_out_shortened().is_some() {
         core.warn_block("run-out-shortened");
     }
+    core.keep_vector(call, first, end, taper)?;
     let passes_before = core.count_single_cycle(cycle.passes());
     core.start_cycle(CycleMoves::ThreadOnce(Box::new(cycle)), call.code, Vec::new(), passes_before)
 }
