@@ -61,10 +61,6 @@ impl Core {
             CutAlong::X => (captured.first_has_z, captured.first_has_x, "Z"),
         };
         let policies = &self.control.policies;
-        let has_pockets = || {
-            cycles::monotony_fault(&captured.figure, along, self.monotony_tolerance())
-                .is_some_and(|fault| (fault.axis == cycles::PlaneAxis::Second) == (along == CutAlong::Z))
-        };
         // A first block that moves along the cut is a wall, which only type II follows.
         let begins_with_wall = || {
             let start = captured.figure.start;
@@ -79,7 +75,7 @@ impl Core {
         };
         let is_two = match policies.cycle_type {
             CycleType::ByTypeParameter if !self.settings.type_by_first_block => {
-                has_pockets() || begins_with_wall()
+                self.has_pockets(captured, along) || begins_with_wall()
             }
             _ => other,
         };
@@ -101,6 +97,12 @@ impl Core {
                 ))
             }
         }
+    }
+
+    /// Whether the contour goes down again behind the place where it has come up.
+    fn has_pockets(&self, captured: &Captured, along: CutAlong) -> bool {
+        cycles::monotony_fault(&captured.figure, along, self.monotony_tolerance())
+            .is_some_and(|fault| (fault.axis == cycles::PlaneAxis::Second) == (along == CutAlong::Z))
     }
 
     /// How far an axis may turn back: what the parameters forgive, and half an increment in any case.
@@ -150,7 +152,9 @@ impl Core {
             CutAlong::Z => call.block.word(b'W').filter(|_| !allowances.1.is_zero()),
             CutAlong::X => call.block.word(b'U').filter(|_| !allowances.0.0.is_zero()),
         };
-        if let (RoughType::Two, Some(word)) = (kind, sideways) {
+        if let (RoughType::Two, Some(word)) = (kind, sideways)
+            && self.has_pockets(captured, along)
+        {
             self.warn("allowance-into-pocket-wall", word);
         }
         Ok(())
