@@ -10,6 +10,7 @@ mod corner;
 mod curve;
 mod line;
 mod offset;
+mod outline;
 mod segment;
 mod track;
 mod vector;
@@ -19,6 +20,7 @@ pub use corner::{Breaking, Corner, CornerFault, break_corner};
 pub use curve::{Conic, CurveArc, CurveArcs, CurvePath, circle_through, ellipse_centre, parabola_vertex};
 pub use line::Line;
 pub use offset::{Joint, JointFault, Joints, Offset, Side, StartUp};
+pub use outline::{Bounds, CORNER_MM, OUTLINE_MM_MAX, OUTLINE_SEGMENTS_MAX, Outline, OutlineFault};
 pub use segment::{Bend, Segment};
 pub use vector::Vector;
 
