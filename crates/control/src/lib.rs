@@ -6,20 +6,27 @@
 //! Deliberately not here: execution. Control names stand only in `data/`; where behaviour differs, a named
 //! policy (see [`policy`]) is answered there and asked by the stage concerned.
 
+mod blank;
 mod functions;
 mod messages;
+mod outline;
 mod parameter_text;
 mod parameters;
 pub mod policy;
 mod setup;
+mod setup_text;
 mod signal;
 mod suggest;
+mod tooling;
+mod workholding;
 
 use policy::{AlarmIds, Limits, Policies};
 use serde::Deserialize;
 
+pub use blank::Stock;
 pub use functions::{CodeSystem, FunctionEntry, Functions, Group, parse_code};
 pub use messages::{Language, MessageText, Messages, RaisedBy};
+pub use outline::{ArcTurn, OutlinePoint};
 pub use parameter_text::{
     ParameterExport, ParameterImport, ParameterLine, export_parameters, import_parameters,
 };
@@ -28,8 +35,11 @@ pub use setup::{
     AxisPair, LinearAxis, Machine, MachineAxes, Mode, Offset, OffsetRow, RotaryAxis, Setup, SetupFault,
     machine_names,
 };
+pub use setup_text::setup_key_words;
 pub use signal::Signal;
 pub use suggest::nearest;
+pub use tooling::{Hand, Tool, ToolEntry, ToolKind, ToolPost, ToolSide};
+pub use workholding::{Chuck, ChuckOutlines, Grip, Tailstock};
 
 pub(crate) mod embedded {
     //! Made by the build script.

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
+use turnwright_geometry::Outline;
 
 use crate::signal::Signal;
-use crate::{Axis, Parameters, embedded, nearest};
+use crate::{Axis, Chuck, ChuckOutlines, Parameters, Stock, Tailstock, Tool, ToolEntry, embedded, nearest};
 
 /// A pair of axis values in millimetres; X as a diameter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
@@ -217,6 +218,18 @@ pub struct Setup {
     /// that at X0 Z0 they are true machine coordinates.
     #[serde(default)]
     pub work: BTreeMap<String, AxisPair>,
+    /// What is in the chuck before the first cut.
+    #[serde(default)]
+    pub stock: Option<Stock>,
+    /// What holds it.
+    #[serde(default)]
+    pub chuck: Option<Chuck>,
+    /// A centre in its front face.
+    #[serde(default)]
+    pub tailstock: Option<Tailstock>,
+    /// Tools by turret station.
+    #[serde(default)]
+    pub tools: BTreeMap<String, ToolEntry>,
     /// Parameters of a punched text that are not known here, or only in part, by number: `"1023" = "A1P1 A2P2"`.
     /// They change nothing and are written out again.
     #[serde(default)]
@@ -232,52 +245,58 @@ pub struct SetupFault {
     pub line: u32,
 }
 
+fn of_section(section: &str, (key, why): (&'static str, String)) -> SetupFault {
+    SetupFault { message: format!("{section}.{key}: {why}"), line: 0 }
+}
+
+/// A message of the TOML reader about an unknown word, with the known word that is nearest.
+fn with_suggestion(message: &str) -> String {
+    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    match quoted[..] {
+        [typed, ref known @ ..] if message.starts_with("unknown ") && known.len() > 1 => {
+            let near = nearest(typed, known.iter().copied());
+            near.map_or_else(|| message.to_string(), |near| format!("{message}; did you mean {near}?"))
+        }
+        _ => message.to_string(),
+    }
+}
+
+/// The line of the key that a message begins with (`tools.3.insert: …`), as far as it is written in the usual way: a
+/// section in brackets and a line for each key.
+fn line_of(text: &str, message: &str) -> u32 {
+    let path = message.split(": ").next().unwrap_or_default();
+    let (section, key) = path.rsplit_once('.').unwrap_or((path, ""));
+    let (mut header, mut of_section) = (String::new(), 0);
+    for (index, line) in text.lines().enumerate() {
+        let line = line.split('#').next().unwrap_or_default().trim();
+        let number = index as u32 + 1;
+        if let Some(name) = line.strip_prefix('[') {
+            header = name.trim_end_matches(']').replace([' ', '"', '\''], "");
+            if header == path || (header == section && of_section == 0) {
+                of_section = number;
+            }
+        } else if let Some((name, _)) = line.split_once('=') {
+            let name = name.trim().replace([' ', '"', '\''], "");
+            let whole = if header.is_empty() { name.clone() } else { format!("{header}.{name}") };
+            if whole == path || (header == section && name == key) {
+                return number;
+            }
+            if whole == section && of_section == 0 {
+                of_section = number;
+            }
+        }
+    }
+    of_section
+}
+
 /// A value as a user would type it; the name of its kind when it is none, which is refused as no number.
-fn typed(value: &toml::Value) -> String {
+pub(crate) fn typed(value: &toml::Value) -> String {
     match value {
         toml::Value::Integer(value) => value.to_string(),
         toml::Value::Float(value) => value.to_string(),
         toml::Value::Boolean(value) => u8::from(*value).to_string(),
         toml::Value::String(value) => value.clone(),
         other => other.type_str().to_string(),
-    }
-}
-
-/// A string of TOML.
-fn quoted(text: &str) -> String {
-    let mut out = String::from('"');
-    for character in text.chars() {
-        match character {
-            '"' | '\\' => out.extend(['\\', character]),
-            character if character.is_control() => out.push_str(&format!("\\u{:04X}", u32::from(character))),
-            character => out.push(character),
-        }
-    }
-    out.push('"');
-    out
-}
-
-/// A key of TOML: bare where that reads as one key.
-fn key(text: &str) -> String {
-    let is_bare = !text.is_empty()
-        && text.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-'));
-    if is_bare { text.to_string() } else { quoted(text) }
-}
-
-/// A value of TOML on one line.
-fn inline(value: &toml::Value) -> String {
-    match value {
-        toml::Value::String(text) => quoted(text),
-        toml::Value::Table(table) => {
-            let entries: Vec<String> =
-                table.iter().map(|(key, value)| format!("{} = {}", self::key(key), inline(value))).collect();
-            format!("{{ {} }}", entries.join(", "))
-        }
-        toml::Value::Array(values) => {
-            let values: Vec<String> = values.iter().map(inline).collect();
-            format!("[{}]", values.join(", "))
-        }
-        other => typed(other),
     }
 }
 
@@ -334,12 +353,89 @@ impl Setup {
             } else {
                 0
             };
-            SetupFault { message: error.message().to_string(), line }
+            SetupFault { message: with_suggestion(error.message()), line }
         })?;
-        match setup.skip.iter().find_map(Signal::fault) {
-            Some(message) => Err(SetupFault { message: message.to_string(), line: 0 }),
-            None => Ok(setup),
+        if let Some(message) = setup.skip.iter().find_map(Signal::fault) {
+            return Err(SetupFault { message: message.to_string(), line: 0 });
         }
+        setup.check().map_err(|mut fault| {
+            fault.line = line_of(text, &fault.message);
+            fault
+        })?;
+        Ok(setup)
+    }
+
+    /// Whether stock, chuck, tailstock and tools can be.
+    ///
+    /// # Errors
+    /// The key and the reason.
+    pub fn check(&self) -> Result<(), SetupFault> {
+        self.stock_outline()?;
+        self.chuck_outlines()?;
+        self.tailstock_outline()?;
+        self.tools().map(|_| ())
+    }
+
+    /// The half-section of the stock in work coordinates, X as a radius.
+    ///
+    /// # Errors
+    /// The key and the reason.
+    pub fn stock_outline(&self) -> Result<Option<Outline>, SetupFault> {
+        self.stock
+            .as_ref()
+            .map(|stock| stock.outline().map_err(|fault| of_section("stock", fault)))
+            .transpose()
+    }
+
+    /// Jaws and chuck.
+    ///
+    /// # Errors
+    /// The key and the reason.
+    pub fn chuck_outlines(&self) -> Result<Option<ChuckOutlines>, SetupFault> {
+        let Some(chuck) = &self.chuck else { return Ok(None) };
+        let stock = self.stock_outline()?;
+        chuck.outlines(stock.as_ref()).map(Some).map_err(|fault| of_section("chuck", fault))
+    }
+
+    /// The centre and its quill.
+    ///
+    /// # Errors
+    /// The key and the reason.
+    pub fn tailstock_outline(&self) -> Result<Option<Outline>, SetupFault> {
+        let Some(tailstock) = &self.tailstock else { return Ok(None) };
+        let face_z = self.stock_outline()?.map(|stock| stock.bounds().max.z);
+        tailstock.outline(face_z).map(Some).map_err(|fault| of_section("tailstock", fault))
+    }
+
+    /// The tools with their shapes, by turret station. Nose and tip that an entry leaves open are those of the
+    /// offset of the same number.
+    ///
+    /// # Errors
+    /// The key and the reason.
+    pub fn tools(&self) -> Result<BTreeMap<u32, Tool>, SetupFault> {
+        let shaped = self.tools.iter().map(|(name, entry)| {
+            let fault = |key: &str, why: String| {
+                let key = if key.is_empty() { String::new() } else { format!(".{key}") };
+                SetupFault { message: format!("tools.{name}{key}: {why}"), line: 0 }
+            };
+            let station = name.parse::<u32>().ok().filter(|station| (1..=999).contains(station));
+            let station =
+                station.ok_or_else(|| fault("", "a turret station is a number, 1 to 999".to_string()))?;
+            let offset = self.offsets.iter().find(|(number, _)| number.parse() == Ok(station));
+            let nose = offset.map(|(_, offset)| (offset.geometry.r + offset.wear.r, offset.tip));
+            entry.resolve(nose).map(|tool| (station, tool)).map_err(|wrong| fault(wrong.key, wrong.why))
+        });
+        let mut tools = BTreeMap::new();
+        for one in shaped {
+            let (station, tool) = one?;
+            if tools.insert(station, tool).is_some() {
+                return Err(SetupFault {
+                    message: format!("tools: station {station} is there twice"),
+                    line: 0,
+                });
+            }
+        }
+        Ok(tools)
     }
 
     /// After which part of a move, of a block at `line` and for an input, a signal comes. Places are work
@@ -384,46 +480,6 @@ impl Setup {
                 }
             }
         }
-    }
-
-    /// The setup as a file; comments of the file it was read from are not in it.
-    pub fn to_toml(&self) -> String {
-        let mut out = String::new();
-        for (key, value) in [("control", &self.control), ("machine", &self.machine)] {
-            if let Some(value) = value {
-                out.push_str(&format!("{key} = {}\n", quoted(value)));
-            }
-        }
-        let mut section = |name: &str, lines: Vec<String>| {
-            if !lines.is_empty() {
-                out.push_str(if out.is_empty() { "" } else { "\n" });
-                out.push_str(&format!("[{name}]\n{}\n", lines.join("\n")));
-            }
-        };
-        let value_line =
-            |(key, value): (&String, &toml::Value)| format!("{} = {}", self::key(key), inline(value));
-        section("parameters", self.parameters.iter().map(value_line).collect());
-        section("rates", self.rates.iter().map(value_line).collect());
-        let kept = self.kept.iter().map(|(key, value)| format!("{} = {}", self::key(key), quoted(value)));
-        section("kept", kept.collect());
-        let work = self.work.iter();
-        let work = work.map(|(name, pair)| format!("{} = {{ x = {}, z = {} }}", key(name), pair.x, pair.z));
-        section("work", work.collect());
-        let mut offsets: Vec<_> = self.offsets.iter().collect();
-        offsets.sort_by_key(|(name, _)| name.parse::<u32>().unwrap_or(u32::MAX));
-        for (name, offset) in offsets {
-            let row = |row: &OffsetRow| {
-                let y = if row.y == 0.0 { String::new() } else { format!("y = {}, ", row.y) };
-                format!("{{ x = {}, {y}z = {}, r = {} }}", row.x, row.z, row.r)
-            };
-            let lines = vec![
-                format!("geometry = {}", row(&offset.geometry)),
-                format!("wear = {}", row(&offset.wear)),
-                format!("tip = {}", offset.tip),
-            ];
-            section(&format!("offsets.{}", key(name)), lines);
-        }
-        out
     }
 
     /// The machine with its overrides.
