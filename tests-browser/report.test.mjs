@@ -306,6 +306,54 @@ test("the demo: a diagnostic, an operation and marks lead to their lines", { ski
   assert.match(await readout(), /lines 21 to 27.*4 moves/);
 });
 
+test("the demo: every cycle has a table of its passes, and a pass lights its moves", { skip: !isDemo }, async () => {
+  const summaries = await page.$$eval("#cycles summary", (all) => all.map((one) => one.textContent));
+  assert.deepEqual(summaries, ["G71 Rough turning, 10 passesline 9", "G70 Finish turning, 1 passline 19", "G76 Thread in many passes, 6 passesline 31"]);
+  const cells = (row) => page.$$eval(`#${row} td`, (all) => all.map((one) => one.textContent));
+  assert.deepEqual(await cells("pass-0-3"), ["4", "cut", "8", "36, 2.1", "36, −28.5", "U2. in line 8, figure line 15"]);
+  assert.deepEqual((await cells("pass-2-0")).slice(0, 3), ["1", "thread", "0.35"], "counted from the crest");
+  assert.equal((await cells("pass-2-5")).at(-1), "P920 in line 31");
+  await page.click("#pass-0-3 .link");
+  const { lit, selectedLine } = await state();
+  assert.equal(selectedLine, 9);
+  // In, cut, escape, back; and nothing of the other passes.
+  assert.equal(lit.length, 4);
+  assert.deepEqual(await page.evaluate((all) => all.map((i) => turnwright.passOfSegment(i)), lit), Array(4).fill([0, 3]));
+  assert.deepEqual(await page.evaluate(() => turnwright.passNumbersDrawn()), [4]);
+  assert.equal(await page.getAttribute("#pass-0-3", "aria-current"), "true");
+  assert.match(await readout(), /G71 Rough turning.*pass 4.*depth 8.*U2\. in line 8/);
+  await page.click("#language");
+  assert.match((await cells("pass-0-3")).at(-1), /第 8 行的 U2\.，轮廓第 15 行/);
+  assert.equal(await page.getAttribute("#pass-0-3", "aria-current"), "true", "the choice stays");
+  await page.keyboard.press("Escape");
+  assert.equal(await page.locator("#cycles tr[aria-current]").count(), 0);
+  assert.deepEqual(await page.evaluate(() => turnwright.passNumbersDrawn()), []);
+});
+
+test("the demo: a click on a pass in the picture marks its row, the line of a cycle numbers its passes", { skip: !isDemo }, async () => {
+  await page.click("#cycles details[data-cycle='0'] summary");
+  assert.equal(await page.locator("#cycles details[data-cycle='0']").getAttribute("open"), null, "closed by hand");
+  await page.evaluate(() => scrollTo(0, 0));
+  const segment = await page.evaluate(() => {
+    for (let i = 0; ; i++) if (String(turnwright.passOfSegment(i)) === "0,2") {
+      const { x, y } = turnwright.placeOf(i), box = document.getElementById("picture").getBoundingClientRect();
+      if (x > box.left + 80 && x < box.right - 20 && y > box.top + 40) return i;
+    }
+  });
+  const place = await page.evaluate((i) => turnwright.placeOf(i), segment);
+  await page.mouse.click(place.x, place.y);
+  const [cycle, row] = await page.evaluate(() => turnwright.selectedPass);
+  assert.equal(cycle, 0);
+  assert.equal(await page.getAttribute(`#pass-0-${row}`, "aria-current"), "true");
+  assert.equal(await page.locator("#cycles details[data-cycle='0']").getAttribute("open"), "", "opened again");
+  await page.click("#line-9");
+  assert.deepEqual(await page.evaluate(() => turnwright.passNumbersDrawn()), [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]);
+  await page.click("#line-5");
+  assert.deepEqual(await page.evaluate(() => turnwright.passNumbersDrawn()), []);
+  await page.evaluate(() => turnwright.goTo(3));
+  assert.equal(await page.evaluate(() => turnwright.selectedPass), null);
+});
+
 test("the demo: text of the program stays text", { skip: !isDemo }, async () => {
   assert.equal(await page.textContent("#line-33 code"), "N300 T0000 (</script><b>not bold</b> & 车刀)");
   assert.equal(await page.locator("#rows b").count(), 0);

@@ -215,7 +215,7 @@ pub(crate) struct Plot {
     pub(crate) machine: Machine,
 }
 
-/// Says what a G or M code, an alarm or a parameter means.
+/// Says what a G or M code, an alarm or a parameter means, or what each pass of a cycle does and why.
 #[derive(Debug, Args)]
 #[command(after_long_help = examples("explain"))]
 pub(crate) struct Explain {
@@ -225,6 +225,9 @@ pub(crate) struct Explain {
     /// Shows every pass of the cycle that this line of the program runs, and what caused it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) line: Option<u32>,
+    /// Draws that cycle with its passes numbered: a name that ends in .svg or .png
+    #[arg(short, long, value_name = "OUT.svg|OUT.png", value_parser = picture_name, requires = "line")]
+    pub(crate) output: Option<PathBuf>,
     /// Form of the answer
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
     pub(crate) format: LookupFormat,

@@ -146,6 +146,30 @@ impl ProgramText {
     }
 }
 
+/// Finds lines that are asked for mostly one after the other, without counting from the start each time.
+#[derive(Debug, Default)]
+pub(crate) struct LineFinder {
+    source: u32,
+    /// The line found last, from 1, and where it starts.
+    line: u32,
+    offset: u64,
+}
+
+impl LineFinder {
+    /// The bytes of a line (from 1) of a text, which is known by the number of its source.
+    pub(crate) fn line(&mut self, text: &ProgramText, source: u32, line: u32) -> Vec<u8> {
+        if self.source != source || self.line == 0 || line < self.line {
+            (self.source, self.line, self.offset) = (source, 1, 0);
+        }
+        let mut lines = Lines { base: self.offset, ..Lines::new(text) };
+        if (self.line..line).try_for_each(|_| lines.next().map(|_| ())).is_none() {
+            return Vec::new();
+        }
+        (self.line, self.offset) = (line, lines.offset());
+        text.line_at(self.offset)
+    }
+}
+
 /// The lines of a text, one by one; a very long one gives its head.
 pub(crate) struct Lines<'a> {
     text: &'a ProgramText,

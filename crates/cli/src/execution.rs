@@ -130,6 +130,11 @@ impl<'a> Execution<'a> {
         (source != 0).then(|| self.panel.source(SourceId(source)).name.as_str())
     }
 
+    /// The text behind the number of a source.
+    pub(crate) fn text_of(&self, source: SourceId) -> &ProgramText {
+        self.panel.source(source)
+    }
+
     /// The interpreter.
     pub(crate) fn interpreter(&self) -> &Interpreter {
         &self.interpreter

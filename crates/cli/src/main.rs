@@ -13,6 +13,7 @@ mod execution;
 mod fault;
 mod finding;
 mod output;
+mod passes;
 mod render;
 mod report;
 mod session;

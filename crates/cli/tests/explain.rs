@@ -88,6 +88,36 @@ fn every_pass_of_a_cycle_says_what_caused_it() {
 }
 
 #[test]
+fn a_cycle_is_drawn_with_its_passes_numbered() {
+    let folder = Folder::new();
+    let program = folder.file("part.nc", ROUGHING);
+    for name in ["cycle.svg", "cycle.png"] {
+        let picture = folder.path(name);
+        let target = picture.display().to_string();
+        let ran =
+            turnwright(&["explain", &program, "--line", "4", "--control", "fanuc-0i-tf", "-o", &target]);
+        assert!(ran.status == 0 && ran.out.contains("U10. in line 3"), "{}", ran.err);
+        assert!(std::fs::metadata(&picture).is_ok_and(|file| file.len() > 1_000), "{name}");
+    }
+    let svg = std::fs::read_to_string(folder.path("cycle.svg")).expect("the picture");
+    for text in [">1</text>", ">2</text>", "G71 line 4: G71 P10 Q20"] {
+        assert!(svg.contains(text), "{text}");
+    }
+    let ran = turnwright(&["explain", "G71", "-o", "cycle.svg"]);
+    assert!(ran.status == 2 && ran.err.contains("--line"), "{}", ran.err);
+}
+
+#[test]
+fn single_cycles_show_the_passes_of_their_line() {
+    let folder = Folder::new();
+    let text = "S500 M03\nG00 X50. Z2.\nG90 X40. Z-20. F0.2\nX30.\nG28 U0 W0\nM30\n";
+    let program = folder.file("part.nc", text);
+    let ran = turnwright(&["explain", &program, "--line", "4", "--control", "fanuc-0i-tf"]);
+    let row = ran.out.lines().last().expect("a row").split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_eq!(row, "2 cut 10 30 2 30 -20 X30. in line 4", "{}", ran.out);
+}
+
+#[test]
 fn the_depths_of_a_thread_come_from_their_words() {
     let folder = Folder::new();
     let text = "G97 S500 M03\nG00 X25. Z5.\nG76 P020060 Q100 R0.05\nG76 X17.4 Z-20. P1300 Q400 F2.\nM30\n";
@@ -98,6 +128,10 @@ fn the_depths_of_a_thread_come_from_their_words() {
         let line = ran.out.lines().find(|line| line.trim_start().starts_with(number)).expect("a row");
         line.to_string()
     };
+    // Depths count from the crest, X20, not from the start point.
+    assert!(row("1 ").starts_with("     1  thread    0.4    19.2"), "{}", ran.out);
+    assert!(row("10 ").starts_with("    10  thread    1.3    17.4"), "{}", ran.out);
+    assert!(row("9 ").ends_with("R0.05 in line 3"), "{}", ran.out);
     assert!(row("1 ").ends_with("Q400 in line 4"), "{}", ran.out);
     assert!(row("6 ").ends_with("Q100 in line 3"), "{}", ran.out);
     assert!(row("10 ").ends_with("P1300 in line 4"), "{}", ran.out);

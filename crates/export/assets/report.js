@@ -1,4 +1,5 @@
-// The report's behaviour. In: the run and the texts, embedded as JSON. Nothing is fetched, nothing is stored.
+// The report's behaviour, behind `report-path.js`. In: the run and the texts, embedded as JSON. Nothing is fetched,
+// nothing is stored.
 // Coordinates are millimetres, X as a radius until it is shown; angles turn from Z towards X.
 "use strict";
 (() => {
@@ -34,52 +35,12 @@
     return made;
   };
 
-  // ---- the path as typed arrays ------------------------------------------------------------------------
+  // ---- the path ----------------------------------------------------------------------------------------
   const path = run.path;
-  const segments = path.ends.length / 2;
-  const steps = path.first.length;
-  const startX = new Float32Array(segments), startZ = new Float32Array(segments);
-  const endX = new Float32Array(segments), endZ = new Float32Array(segments);
-  const kind = new Uint8Array(segments);
-  const sweep = new Float32Array(segments), centreX = new Float32Array(segments), centreZ = new Float32Array(segments);
-  const moveOf = new Uint32Array(segments);
-  const segmentEnd = (move) => (move + 1 < steps ? path.first[move + 1] : segments);
-  for (let i = 0; i < segments; i++) {
-    endX[i] = path.ends[2 * i];
-    endZ[i] = path.ends[2 * i + 1];
-    if (i > 0) { startX[i] = endX[i - 1]; startZ[i] = endZ[i - 1]; }
-  }
-  for (let j = 0; j < path.jumps.length; j += 3) {
-    startX[path.jumps[j]] = path.jumps[j + 1];
-    startZ[path.jumps[j]] = path.jumps[j + 2];
-  }
-  for (let j = 0; j < path.arcs.length; j += 4) {
-    const i = path.arcs[j];
-    centreX[i] = path.arcs[j + 1];
-    centreZ[i] = path.arcs[j + 2];
-    sweep[i] = path.arcs[j + 3];
-  }
-  for (let move = 0; move < steps; move++) {
-    for (let i = path.first[move]; i < segmentEnd(move); i++) { moveOf[i] = move; kind[i] = path.kind[move]; }
-  }
-  const arcRadius = (i) => Math.hypot(startX[i] - centreX[i], startZ[i] - centreZ[i]);
-  // Rectangle of each segment; for an arc the whole circle, which is enough to leave out what is not seen.
-  const box = new Float32Array(4 * segments);
-  for (let i = 0; i < segments; i++) {
-    const r = arcRadius(i), bow = sweep[i] !== 0;
-    box[4 * i] = bow ? centreZ[i] - r : Math.min(startZ[i], endZ[i]);
-    box[4 * i + 1] = bow ? centreX[i] - r : Math.min(startX[i], endX[i]);
-    box[4 * i + 2] = bow ? centreZ[i] + r : Math.max(startZ[i], endZ[i]);
-    box[4 * i + 3] = bow ? centreX[i] + r : Math.max(startX[i], endX[i]);
-  }
-  // The place on segment i after the part `t` (0 to 1) of it.
-  const along = (i, t) => {
-    if (sweep[i] === 0) return [startX[i] + (endX[i] - startX[i]) * t, startZ[i] + (endZ[i] - startZ[i]) * t];
-    const r = arcRadius(i), angle = Math.atan2(startX[i] - centreX[i], startZ[i] - centreZ[i]) + sweep[i] * t;
-    return [centreX[i] + r * Math.sin(angle), centreZ[i] + r * Math.cos(angle)];
-  };
-  const lengthOf = (i) =>
-    sweep[i] !== 0 ? arcRadius(i) * Math.abs(sweep[i]) : Math.hypot(endX[i] - startX[i], endZ[i] - startZ[i]);
+  const {
+    segments, steps, startX, startZ, endX, endZ, kind, sweep, centreX, centreZ, moveOf, box,
+    segmentEnd, arcRadius, along, lengthOf, grid, distance,
+  } = typedPath(path);
 
   // Moves by the line that ran them and by the figure line that shaped them.
   const movesByLine = new Map();
@@ -93,47 +54,23 @@
     if (path.figure[move] !== path.line[move]) remember(path.figure[move], move);
   }
 
-  // A grid over the path for finding what is near the pointer; long segments are in a list of their own.
-  const grid = (() => {
-    const SIDE = 96, LONG = 400;
-    const space = path.view;
-    const cellZ = Math.max((space[3] - space[2]) / SIDE, 1e-6), cellX = Math.max((space[1] - space[0]) / SIDE, 1e-6);
-    const clampCell = (value) => Math.max(0, Math.min(SIDE - 1, Math.floor(value)));
-    const column = (z) => clampCell((z - space[2]) / cellZ), row = (x) => clampCell((x - space[0]) / cellX);
-    const cells = new Map(), long = [];
-    for (let i = 0; i < segments; i++) {
-      const c0 = column(box[4 * i]), c1 = column(box[4 * i + 2]), r0 = row(box[4 * i + 1]), r1 = row(box[4 * i + 3]);
-      if ((c1 - c0 + 1) * (r1 - r0 + 1) > LONG) { long.push(i); continue; }
-      for (let c = c0; c <= c1; c++) for (let r = r0; r <= r1; r++) {
-        const cell = c * SIDE + r;
-        if (!cells.has(cell)) cells.set(cell, []);
-        cells.get(cell).push(i);
-      }
-    }
-    return {
-      * near(x, z, reach) {
-        yield* long;
-        for (let c = column(z - reach); c <= column(z + reach); c++)
-          for (let r = row(x - reach); r <= row(x + reach); r++) yield* cells.get(c * SIDE + r) ?? [];
-      },
-    };
-  })();
-  const distance = (i, x, z) => {
-    if (sweep[i] !== 0) {
-      const r = arcRadius(i), turn = Math.sign(sweep[i]), full = 2 * Math.PI;
-      const start = Math.atan2(startX[i] - centreX[i], startZ[i] - centreZ[i]);
-      const at = (((Math.atan2(x - centreX[i], z - centreZ[i]) - start) * turn) % full + full) % full;
-      if (at <= Math.abs(sweep[i])) return Math.abs(Math.hypot(x - centreX[i], z - centreZ[i]) - r);
-      return Math.min(Math.hypot(x - startX[i], z - startZ[i]), Math.hypot(x - endX[i], z - endZ[i]));
-    }
-    const dx = endX[i] - startX[i], dz = endZ[i] - startZ[i], square = dx * dx + dz * dz;
-    const t = square > 0 ? Math.max(0, Math.min(1, ((x - startX[i]) * dx + (z - startZ[i]) * dz) / square)) : 0;
-    return Math.hypot(x - startX[i] - dx * t, z - startZ[i] - dz * t);
+  // Cycles are runs of moves; a pass is those of its number.
+  const cycles = run.cycles;
+  const movesOfPass = ([at, row]) => {
+    const { first, end, passes } = cycles[at], all = [];
+    for (let move = first; move < Math.min(end, steps); move++) if (path.pass[move] === passes[row].number) all.push(move);
+    return all;
+  };
+  const passOfMove = (move) => {
+    const at = cycles.findIndex(({ first, end }) => move >= first && move < end);
+    const row = at < 0 ? -1 : cycles[at].passes.findIndex(({ number }) => number === path.pass[move]);
+    return row < 0 ? null : [at, row];
   };
 
   // ---- the state ---------------------------------------------------------------------------------------
   let selectedFrom = 0, selectedTo = 0;   // lines, 0 for none
   let pickedMove = -1;                    // the move chosen in the picture
+  let pickedPass = null;                  // the pass chosen: numbers of its cycle and of its row
   let linesLast = false;                  // whether lines were chosen after the last step
   let step = steps;                       // moves done
   let part = 0;                           // how much of the next move is done, while playing
@@ -341,6 +278,37 @@
       doneSegments = wanted;
     }
   };
+  // The numbers of the passes that the selection is about, each where its pass begins, as far as there is room.
+  const numberedPasses = () => {
+    if (pickedPass) return [cycles[pickedPass[0]].passes[pickedPass[1]]];
+    if (selectedFrom === 0) return [];
+    return cycles.flatMap(({ passes }) => passes.filter(({ line }) => line >= selectedFrom && line <= selectedTo));
+  };
+  const drawPassNumbers = (c) => {
+    const taken = [], GAP = 6, HIGH = 12;
+    c.font = "bold 12px system-ui, sans-serif";
+    c.textAlign = "center";
+    c.textBaseline = "middle";
+    numbersDrawn = [];
+    for (const { number: n, from } of numberedPasses()) {
+      const x = toPxX(from[1]), y = toPxY(from[0] / 2), text = String(n), wide = c.measureText(text).width;
+      if (x < LEFT || x > width || y < 0 || y > height - BOTTOM) continue;
+      c.beginPath(); c.arc(x, y, 2.5, 0, 2 * Math.PI);
+      c.fillStyle = colours["lit-core"]; c.fill();
+      if (numbersDrawn.length >= 500) continue;
+      const room = [[GAP + wide / 2, 0], [-GAP - wide / 2, 0], [0, -GAP - HIGH / 2], [0, GAP + HIGH / 2]]
+        .map(([dx, dy]) => [x + dx - wide / 2 - 1, y + dy - HIGH / 2, x + dx + wide / 2 + 1, y + dy + HIGH / 2])
+        .find(([x0, y0, x1, y1]) => x0 > LEFT && x1 < width && y0 > 0 && y1 < height - BOTTOM
+          && !taken.some(([a0, b0, a1, b1]) => x0 < a1 && a0 < x1 && y0 < b1 && b0 < y1));
+      if (!room) continue;
+      taken.push(room);
+      numbersDrawn.push(n);
+      c.lineWidth = 3; c.lineJoin = "round"; c.strokeStyle = colours.paper;
+      c.strokeText(text, (room[0] + room[2]) / 2, (room[1] + room[3]) / 2);
+      c.fillText(text, (room[0] + room[2]) / 2, (room[1] + room[3]) / 2);
+    }
+  };
+  let numbersDrawn = [];
   const drawMarks = () => {
     const c = marksLayer;
     c.clearRect(0, 0, width, height);
@@ -355,6 +323,7 @@
         c.beginPath(); c.arc(toPxX(endZ[end]), toPxY(endX[end]), 4, 0, 2 * Math.PI);
         c.fillStyle = colours["lit-core"]; c.fill();
       }
+      drawPassNumbers(c);
       const tool = toolPosition();
       if (tool && step < steps) {
         c.beginPath(); c.arc(toPxX(tool[1]), toPxY(tool[0]), 6, 0, 2 * Math.PI);
@@ -544,10 +513,20 @@
     parts.push(word("time-at", { n: seconds(path.elapsed[move]) }));
     return parts;
   };
+  const causeText = ({ key, ...values }) => word(key, values);
+  const causesText = (pass) => pass.causes.map(causeText).join(word("pass-cause-separator"));
+  const describePass = () => {
+    if (!pickedPass) return [];
+    const pass = cycles[pickedPass[0]].passes[pickedPass[1]];
+    return [word("depth-of", { n: number(pass.depth, 4) }), ...(pass.causes.length > 0 ? [causesText(pass)] : [])];
+  };
   const readout = () => {
     const spans = (parts) => parts.map((text, at) => element("span", {}, at === 0 ? element("b", {}, text) : text));
     const target = byId("readout");
-    if (pickedMove >= 0) target.replaceChildren(...spans(describe(pickedMove)));
+    if (pickedMove >= 0) target.replaceChildren(...spans([...describe(pickedMove), ...describePass()]));
+    else if (pickedPass) target.replaceChildren(...spans([
+      `${cycles[pickedPass[0]].code} ${inLanguage(cycles[pickedPass[0]].name)}`,
+      word("pass", { n: cycles[pickedPass[0]].passes[pickedPass[1]].number }), ...describePass()]));
     else if (!linesLast && step > 0 && step < steps) target.replaceChildren(...spans(describe(step - 1)));
     else if (!linesLast && step === 0 && steps > 0) target.replaceChildren(...spans([word("readout-start")]));
     else if (selectedFrom > 0) {
@@ -567,14 +546,16 @@
     for (let line = selectedFrom; line > 0 && line <= selectedTo; line++) all.push(...(movesByLine.get(line) ?? []));
     return all;
   }
-  const select = (from, to = from, move = -1) => {
+  const select = (from, to = from, move = -1, pass = null) => {
     selectedFrom = from;
     selectedTo = to;
     pickedMove = move;
+    pickedPass = pass ?? (move >= 0 ? passOfMove(move) : null);
     linesLast = from > 0;
     const all = new Set();
     const light = (one) => { for (let i = path.first[one]; i < segmentEnd(one); i++) all.add(i); };
-    movesOfSelection().forEach(light);
+    (pass ? movesOfPass(pass) : movesOfSelection()).forEach(light);
+    markPass();
     lit = Uint32Array.from(all).sort();
     if (from > 0) scrollTo(from);
     markRows();
@@ -590,6 +571,8 @@
     else { drawDone(); drawMarks(); }
     if (before !== step) {
       pickedMove = -1;
+      pickedPass = null;
+      markPass();
       linesLast = false;
       if (step > 0 && step < steps) scrollTo(path.line[step - 1]);
       markRows();
@@ -647,6 +630,52 @@
     byId("operations").closest("section").hidden = run.operations.length === 0;
     byId("note").textContent = inLanguage(run.note);
   };
+  const passRow = (at, row) => byId(`pass-${at}-${row}`);
+  const selectPass = (at, row) => {
+    select(cycles[at].passes[row].line, cycles[at].passes[row].line, -1, [at, row]);
+    document.querySelector("main").scrollIntoView({ block: "nearest" });
+  };
+  // A table is made when it is opened: a long program has thousands of passes.
+  const fillCycle = (details) => {
+    if (details.childElementCount > 1) return;
+    const at = Number(details.dataset.cycle), { settings, passes } = cycles[at];
+    const cell = (text, kind) => element("td", { class: kind }, text);
+    const place = ([x, z]) => `${number(x, 4)}, ${number(z, 4)}`;
+    const head = [["number", 1], ["phase", 0], ["depth", 1], ["from", 1], ["to", 1], ["cause", 0]];
+    details.append(
+      element("p", { class: "settings" }, ...settings.map((one) =>
+        element("span", {}, `${inLanguage(one.name)} ${number(one.value, 4)} (${causeText(one.cause)})`))),
+      element("div", { class: "scroll" }, element("table", {},
+        element("thead", {}, element("tr", {}, ...head.map(([key, quantity]) =>
+          element("th", { scope: "col", class: quantity ? "quantity" : undefined }, word("pass-" + key))))),
+        element("tbody", {}, ...passes.map((pass, row) => element("tr", { id: `pass-${at}-${row}` },
+          element("td", { class: "quantity" }, element("button", { type: "button", class: "link", onclick: () => selectPass(at, row) }, String(pass.number))),
+          cell(word("phase-" + pass.phase)), cell(number(pass.depth, 4), "quantity"),
+          cell(place(pass.from), "quantity"), cell(place(pass.to), "quantity"), cell(causesText(pass), "cause")))))));
+  };
+  const CYCLE_PASSES_OPEN = 200;
+  const makeCycles = () => {
+    const open = new Set([...document.querySelectorAll("#cycles details[open]")].map((one) => Number(one.dataset.cycle)));
+    const isFirst = byId("cycles").childElementCount === 0;
+    const few = cycles.reduce((sum, { passes }) => sum + passes.length, 0) <= CYCLE_PASSES_OPEN;
+    byId("cycles").replaceChildren(...cycles.map(({ code, name, line, passes }, at) => {
+      const details = element("details", { "data-cycle": at },
+        element("summary", {}, word(passes.length === 1 ? "cycle-summary-one" : "cycle-summary", { code, name: inLanguage(name), n: passes.length }),
+          ...(line > 0 ? [lineButton(word("line", { n: line }), line, line)] : [])));
+      if (isFirst ? few : open.has(at)) { details.open = true; fillCycle(details); }
+      details.addEventListener("toggle", () => { if (details.open) { fillCycle(details); markPass(); } });
+      return details;
+    }));
+    byId("cycles").closest("section").hidden = cycles.length === 0;
+    markPass();
+  };
+  function markPass() {
+    document.querySelectorAll("#cycles tr[aria-current]").forEach((row) => row.removeAttribute("aria-current"));
+    if (!pickedPass) return;
+    const details = document.querySelector(`#cycles details[data-cycle="${pickedPass[0]}"]`);
+    if (details && !details.open) { details.open = true; fillCycle(details); }
+    passRow(...pickedPass)?.setAttribute("aria-current", "true");
+  }
   const makeDiagnostics = () => {
     const detail = (key, text) => (text ? [element("p", { class: "detail" }, word(key, { text }))] : []);
     byId("diagnostics").replaceChildren(...(run.diagnostics.length === 0 ? [word("none-found")] : run.diagnostics.map((found) =>
@@ -694,6 +723,7 @@
     });
     labelPlay();
     makeOperations();
+    makeCycles();
     makeDiagnostics();
     makeFacts();
     makeLegend();
@@ -817,7 +847,10 @@
     get language() { return language; },
     get view() { return { ...view }; },
     get toolPosition() { const tool = toolPosition(); return tool && { diameter: 2 * tool[0], z: tool[1] }; },
+    get selectedPass() { return pickedPass && [...pickedPass]; },
     highlightedSegments: () => [...lit],
+    passNumbersDrawn: () => [...numbersDrawn],
+    passOfSegment: (i) => passOfMove(moveOf[i]),
     // Where the middle of a segment is on the page.
     placeOf: (i) => {
       const [x, z] = along(i, 0.5), r = picture.getBoundingClientRect();

@@ -15,8 +15,11 @@ use turnwright_canon::{
 };
 use turnwright_diagnostics::Severity;
 use turnwright_export::Language;
-use turnwright_export::formats::html::{Fact, OperationRow, Report, ReportDiagnostic, write_html};
+use turnwright_export::formats::html::{
+    CycleTable, Fact, OperationRow, Report, ReportDiagnostic, write_html,
+};
 use turnwright_export::formats::svg::{PictureOptions, write_svg};
+use turnwright_export::passes::{BlockFacts, Cycle, GivenWord, PassRecorder, Setting};
 use turnwright_export::path::PathRecorder;
 use turnwright_units::{
     Angle, Feed, FeedPerRevolution, Lead, LeastIncrement, Length, Position, Radius, Seconds, WorkTip,
@@ -67,6 +70,7 @@ fn at(diameter_mm: f64, z_mm: f64) -> Position<WorkTip> {
 /// Feeds commands into a recorder, with a rough time for each.
 struct Demo {
     path: PathRecorder,
+    passes: PassRecorder,
     origin: Origin,
 }
 
@@ -81,7 +85,9 @@ impl Demo {
     }
 
     fn add(&mut self, action: Action, seconds: f64) {
-        self.path.add(&Command::new(action, self.origin), seconds);
+        let command = Command::new(action, self.origin);
+        self.path.add(&command, seconds);
+        self.passes.add(&command, facts);
     }
 
     fn rapid(&mut self, diameter_mm: f64, z_mm: f64) {
@@ -110,6 +116,26 @@ impl Demo {
     }
 }
 
+/// What a control would say of the block that runs a cycle.
+fn facts(command: &Command) -> BlockFacts {
+    let setting = |name, number: &str, value, text: &str| Setting {
+        name,
+        number: number.into(),
+        value,
+        given: Some(GivenWord { text: text.into(), line: command.origin.line - 1 }),
+    };
+    let (function, words, settings, crest): (_, &[(u8, &str)], _, _) = match command.origin.line {
+        9 => ("rough-turning", &[], vec![setting("cycle-depth-of-cut", "5132", 2.0, "U2.")], None),
+        31 => {
+            let least = setting("thread-minimum-depth", "5140", 0.1, "Q100");
+            ("multi-thread", &[(b'P', "P920"), (b'Q', "Q350")], vec![least], Some(at(20.0, 0.0).x))
+        }
+        _ => ("finishing", &[], vec![], None),
+    };
+    let words = words.iter().map(|(letter, text)| (*letter, (*text).to_string())).collect();
+    BlockFacts { function: function.into(), words, settings, crest }
+}
+
 /// Where the figure is at this diameter, and the line that shapes it there.
 fn figure_z_mm(diameter_mm: f64) -> (f64, u32) {
     let radius_mm = diameter_mm / 2.0;
@@ -124,9 +150,10 @@ fn figure_z_mm(diameter_mm: f64) -> (f64, u32) {
     }
 }
 
-fn run() -> PathRecorder {
-    let mut demo =
-        Demo { path: PathRecorder::new(at(200.0, 150.0), 8_000.0, 12_000.0), origin: Origin::line(1) };
+fn run() -> (PathRecorder, Vec<Cycle>) {
+    let start = at(200.0, 150.0);
+    let path = PathRecorder::new(start, 8_000.0, 12_000.0);
+    let mut demo = Demo { path, passes: PassRecorder::new(start), origin: Origin::line(1) };
     demo.line(3);
     demo.rapid(150.0, 100.0);
     demo.line(4);
@@ -165,8 +192,9 @@ fn run() -> PathRecorder {
         demo.rapid(24.0, 5.0);
     }
     demo.line(32);
+    demo.origin.cycle = None;
     demo.rapid(150.0, 100.0);
-    demo.path
+    (demo.path, demo.passes.finish().0)
 }
 
 fn rough_and_finish(demo: &mut Demo) {
@@ -211,7 +239,7 @@ fn rough_and_finish(demo: &mut Demo) {
     }
 }
 
-fn report(language: Language) -> Report {
+fn report(language: Language, cycles: Vec<Cycle>) -> Report {
     let row = |index, tool, name: [&str; 2], code: &str, lines: (u32, u32), passes, numbers: [f64; 3]| {
         let [cutting_mm, rapid_mm, seconds] = numbers;
         OperationRow {
@@ -249,6 +277,20 @@ fn report(language: Language) -> Report {
             remedy_zh: zh[2].into(),
         }
     };
+    let cycles = cycles.into_iter().map(|cycle| {
+        let [name_en, name_zh] = match cycle.line {
+            9 => ["Rough turning", "粗车外圆"],
+            31 => ["Thread in many passes", "多重螺纹切削"],
+            _ => ["Finish turning", "精车"],
+        }
+        .map(String::from);
+        let names = |setting: &Setting| match setting.name {
+            "thread-minimum-depth" => ["Least depth", "最小切深"].map(String::from),
+            _ => ["Depth of cut", "切深"].map(String::from),
+        };
+        let setting_names = cycle.settings.iter().map(names).collect();
+        CycleTable { cycle, name_en, name_zh, setting_names }
+    });
     Report {
         title: "demo-shaft.nc".into(),
         control: "fanuc-0i-tf".into(),
@@ -261,6 +303,7 @@ fn report(language: Language) -> Report {
             row(3, 3, ["Groove", "切槽"], "G01", (21, 27), 1, [6.0, 244.8, 4.1]),
             row(4, 5, ["Thread", "车螺纹"], "G76", (28, 32), 6, [162.0, 512.4, 22.8]),
         ],
+        cycles: cycles.collect(),
         diagnostics: vec![
             found(
                 Severity::Warning,
@@ -309,8 +352,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         arguments.first().ok_or("usage: demo_report REPORT.html [PICTURE.svg [PICTURE.png [en|zh]]]")?;
     let language =
         if arguments.get(3).is_some_and(|tag| tag == "zh") { Language::Chinese } else { Language::English };
-    let path = run();
-    std::fs::write(html_path, write_html(&path, &report(language)))?;
+    let (path, cycles) = run();
+    std::fs::write(html_path, write_html(&path, &report(language, cycles)))?;
     let options = PictureOptions { title: "demo-shaft.nc".into(), language, ..PictureOptions::default() };
     let svg = write_svg(&path, &options);
     if let Some(svg_path) = arguments.get(1) {

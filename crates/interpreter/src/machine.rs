@@ -179,6 +179,8 @@ pub(crate) struct Core {
     pub(crate) compensation: Option<Box<Compensation>>,
     /// Parameters that data blocks of cycles have written.
     pub(crate) given: Vec<GivenParameter>,
+    /// Crest of the thread in many passes that began last, at its start.
+    pub(crate) thread_crest: Option<Radius>,
     /// First and last sequence numbers of figures that were roughed.
     pub(crate) roughed: Vec<(u32, u32)>,
     /// Lines of figures that were finished before anything roughed them.
@@ -337,6 +339,7 @@ impl Interpreter {
             corner: None,
             compensation: None,
             given: Vec::new(),
+            thread_crest: None,
             roughed: Vec::new(),
             finished_first: Vec::new(),
             thread_blocks: 0,
@@ -402,6 +405,11 @@ impl Interpreter {
     /// The parameters that data blocks of cycles have written so far, each with the last word that did.
     pub fn given_parameters(&self) -> &[GivenParameter] {
         &self.core.given
+    }
+
+    /// Crest of the thread in many passes that began last, at the thread's start: its depths count from there.
+    pub fn thread_crest(&self) -> Option<Radius> {
+        self.core.thread_crest
     }
 
     /// Decimal places of the control's least increment, metric.

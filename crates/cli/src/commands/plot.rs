@@ -16,6 +16,7 @@ use crate::output::{WholeFile, sarif};
 use crate::render::Printer;
 use crate::report::{Measure, picture_language};
 use crate::session::Session;
+use crate::speech::Speech;
 
 /// Pixels of the PNG for each of the drawing's own.
 const SCALE: f32 = 2.0;
@@ -37,11 +38,7 @@ pub(crate) fn run(options: &Plot, printer: &Printer) -> Result<Status, Fault> {
     let title = options.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let language = picture_language(speech.language);
     let picture = write_svg(&path, &PictureOptions { title, language, ..PictureOptions::default() });
-    if options.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-        WholeFile::write(&options.output, &paint(&options.output, &picture)?, speech)?;
-    } else {
-        WholeFile::write(&options.output, picture.as_bytes(), speech)?;
-    }
+    write_picture(&options.output, &picture, speech)?;
     say(&execution.findings(), &text, options.format, printer)
 }
 
@@ -64,6 +61,15 @@ fn say(findings: &[Finding], text: &ProgramText, format: Format, printer: &Print
     }
     out.flush()?;
     Ok(findings.iter().map(Finding::status).max().unwrap_or(Status::Clean))
+}
+
+/// Writes a drawing in the form that the name of the file asks for.
+pub(super) fn write_picture(target: &Path, picture: &str, speech: Speech) -> Result<(), Finding> {
+    if target.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        WholeFile::write(target, &paint(target, picture)?, speech)
+    } else {
+        WholeFile::write(target, picture.as_bytes(), speech)
+    }
 }
 
 /// A drawing as PNG.

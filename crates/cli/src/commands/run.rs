@@ -20,6 +20,7 @@ use crate::execution::Execution;
 use crate::fault::{Fault, Status, unwritable};
 use crate::finding::Finding;
 use crate::output::{WholeFile, sarif};
+use crate::passes::Passes;
 use crate::render::Printer;
 use crate::report::{Measure, RunReport, picture_language};
 use crate::session::Session;
@@ -48,6 +49,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     let mut folder =
         options.out.as_deref().map(|folder| OutFolder::create(folder, &session, speech)).transpose()?;
 
+    let mut passes = folder.is_some().then(|| Passes::new(&execution));
     let mut progress = Progress::new(&text, printer);
     let decimals = execution.interpreter().decimals();
     while let Some(command) = execution.next_command() {
@@ -55,6 +57,9 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         if let Some(folder) = &mut folder {
             write_json(&mut folder.buffer, &command, decimals, &execution);
             folder.pour(BUFFER_BYTES)?;
+        }
+        if let Some(passes) = &mut passes {
+            passes.add(&command, &execution);
         }
         progress.look(&execution);
     }
@@ -71,6 +76,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         machine,
         findings,
         measure,
+        passes: passes.map(Passes::finish).unwrap_or_default(),
         decimals,
         blocks,
         stopped_at,

@@ -6,6 +6,7 @@ mod page;
 
 use turnwright_canon::Command;
 use turnwright_control::{CodeSystem, Control, Language, Machine, Parameters};
+use turnwright_export::passes::Cycle;
 use turnwright_export::path::PathRecorder;
 use turnwright_motion::{Clock, Kind, MachineRates, Operation, OperationKind, RapidSurfaceSpeed, Summary};
 use turnwright_units::{Length, Position, Rpm, WorkTip, write_millimetres};
@@ -91,6 +92,8 @@ pub(crate) struct RunReport {
     pub(crate) findings: Vec<Finding>,
     /// Time, sums, path.
     pub(crate) measure: Measure,
+    /// The cycles that ran, and how many of their passes were too many to keep.
+    pub(crate) passes: (Vec<Cycle>, u64),
     /// Decimal places of the least increment.
     pub(crate) decimals: u8,
     /// Blocks executed.

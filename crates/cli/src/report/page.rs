@@ -1,12 +1,18 @@
 //! The report of a run as one page, in both languages.
 
-use turnwright_export::formats::html::{Fact, OperationRow, Report, ReportDiagnostic, write_html};
+use std::mem;
+
+use turnwright_export::formats::html::{
+    CycleTable, Fact, OperationRow, Report, ReportDiagnostic, write_html,
+};
+use turnwright_export::passes::Cycle;
 use turnwright_export::path::PathRecorder;
 
 use super::human::rpm_text;
 use super::{RunReport, TIME_PARTS, estimates, operation_name, picture_language};
 use crate::environment::ProgramText;
 use crate::finding::{Finding, decode};
+use crate::passes::setting_name;
 use crate::speech::{BOTH, Speech};
 
 /// Lines of the program in the report.
@@ -20,7 +26,7 @@ const SPEECHES: [Speech; 2] = [Speech { language: BOTH[0] }, Speech { language: 
 
 impl RunReport {
     /// The page.
-    pub(crate) fn page(&self, text: &ProgramText, path: &PathRecorder, speech: Speech) -> String {
+    pub(crate) fn page(&mut self, text: &ProgramText, path: &PathRecorder, speech: Speech) -> String {
         let (program_lines, is_whole) = program_lines(text);
         let mut facts = self.page_facts();
         if !is_whole {
@@ -32,6 +38,12 @@ impl RunReport {
             let sentences: Vec<String> = estimates(speech).map(|(_, sentence)| sentence).collect();
             sentences.join(if speech.language == BOTH[0] { " " } else { "" })
         });
+        let (cycles, dropped) = mem::take(&mut self.passes);
+        if dropped > 0 {
+            facts.push(fact("passes", |speech| {
+                speech.fill("passes-not-kept", &[("n", &dropped.to_string())])
+            }));
+        }
         let report = Report {
             title: self.title(),
             control: self.session.control.name.to_string(),
@@ -39,6 +51,7 @@ impl RunReport {
             source: 0,
             program_lines,
             operations: self.page_operations(),
+            cycles: cycles.into_iter().map(|cycle| self.page_cycle(cycle)).collect(),
             diagnostics: self.findings.iter().map(|finding| page_diagnostic(finding, text)).collect(),
             facts,
             estimated_note_en,
@@ -76,6 +89,17 @@ impl RunReport {
                 }
             })
             .collect()
+    }
+
+    fn page_cycle(&self, cycle: Cycle) -> CycleTable {
+        let parameters = &self.session.control.parameters;
+        let [name_en, name_zh] = SPEECHES.map(|speech| {
+            let entry = speech.functions().get(&cycle.function);
+            entry.map_or(String::new(), |entry| entry.name(speech.language).to_string())
+        });
+        let names = |setting| SPEECHES.map(|speech| setting_name(setting, parameters, speech));
+        let setting_names = cycle.settings.iter().map(names).collect();
+        CycleTable { cycle, name_en, name_zh, setting_names }
     }
 
     fn page_facts(&self) -> Vec<Fact> {

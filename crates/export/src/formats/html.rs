@@ -1,7 +1,7 @@
 //! The report: one HTML file that opens offline and asks nothing of the network.
 //!
 //! In: a recorded path and what there is to say about the run, in words of both languages. Out: one HTML text.
-//! Look and behaviour are `assets/report.html`, `.css` and `.js`; this file only puts the run into them as
+//! Look and behaviour are `assets/report.html`, `.css` and the two `.js`; this file only puts the run into them as
 //! JSON, so that no text of a program ever becomes markup. Deliberately not here: choosing words.
 
 use serde_json::{Value, json};
@@ -11,6 +11,7 @@ use turnwright_units::write_fixed;
 
 use super::svg::{escape_xml, shown_extents};
 use crate::Language;
+use crate::passes::{Cause, Cycle, GivenWord, Pass};
 use crate::path::{Advance, PathRecorder, SegmentKind};
 use crate::words::{REPORT_TEXTS, Words};
 
@@ -19,7 +20,8 @@ pub const REPORT_SEGMENTS_MAX: usize = 300_000;
 
 const TEMPLATE: &str = include_str!("../../assets/report.html");
 const STYLE: &str = include_str!("../../assets/report.css");
-const SCRIPT: &str = include_str!("../../assets/report.js");
+const SCRIPT: &str =
+    concat!(include_str!("../../assets/report-path.js"), include_str!("../../assets/report.js"));
 
 /// What the report says around the path.
 #[derive(Clone, Debug, Default)]
@@ -36,6 +38,8 @@ pub struct Report {
     pub program_lines: Vec<String>,
     /// What each tool did.
     pub operations: Vec<OperationRow>,
+    /// The passes of each cycle.
+    pub cycles: Vec<CycleTable>,
     /// What was found.
     pub diagnostics: Vec<ReportDiagnostic>,
     /// Anything else worth knowing, in order.
@@ -73,6 +77,19 @@ pub struct OperationRow {
     pub rapid_mm: f64,
     /// Time.
     pub seconds: f64,
+}
+
+/// A cycle with the words that only the control knows.
+#[derive(Clone, Debug)]
+pub struct CycleTable {
+    /// Its passes.
+    pub cycle: Cycle,
+    /// What it is, English.
+    pub name_en: String,
+    /// What it is, Chinese.
+    pub name_zh: String,
+    /// What its settings are called, in their order, English and Chinese.
+    pub setting_names: Vec<[String; 2]>,
 }
 
 /// A diagnostic in words already chosen.
@@ -179,6 +196,8 @@ fn run_json(path: &PathRecorder, report: &Report) -> String {
             })
         })
         .collect();
+    let cycles: Vec<Value> =
+        report.cycles.iter().map(|table| cycle_json(table, path, report.source)).collect();
     let facts: Vec<Value> = report
         .facts
         .iter()
@@ -186,7 +205,7 @@ fn run_json(path: &PathRecorder, report: &Report) -> String {
         .collect();
     let head = json!({
         "language": report.language.tag(), "program": report.program_lines, "operations": operations,
-        "diagnostics": diagnostics, "facts": facts,
+        "cycles": cycles, "diagnostics": diagnostics, "facts": facts,
         "note": both(&report.estimated_note_en, &report.estimated_note_zh),
     });
     let mut json = inert_json(&head.to_string());
@@ -195,6 +214,53 @@ fn run_json(path: &PathRecorder, report: &Report) -> String {
     json.push_str(&path_json(path, report.source));
     json.push('}');
     json
+}
+
+/// A cycle: its moves are those with indices from `first` up to `end`.
+fn cycle_json(table: &CycleTable, path: &PathRecorder, source: u32) -> Value {
+    let cycle = &table.cycle;
+    let moves = path.moves();
+    let index = |command| moves.partition_point(|one| one.command < command);
+    let here = cycle.source == source;
+    let settings: Vec<Value> = cycle
+        .settings
+        .iter()
+        .zip(&table.setting_names)
+        .map(|(setting, [en, zh])| {
+            let source = match &setting.given {
+                Some(word) => cause_json(&Cause::Word(word.clone())),
+                None => cause_json(&Cause::Parameter(setting.number.clone())),
+            };
+            json!({ "name": { "en": en, "zh": zh }, "value": setting.value, "cause": source })
+        })
+        .collect();
+    let row = |pass: &Pass| {
+        let causes: Vec<Value> = pass.causes.iter().map(cause_json).collect();
+        json!({
+            "number": pass.number, "line": if here { pass.line } else { 0 }, "phase": pass.phase.word(),
+            "depth": pass.depth.to_mm(), "causes": causes,
+            "from": [pass.from.x.to_diameter().0.to_mm(), pass.from.z.to_mm()],
+            "to": [pass.to.x.to_diameter().0.to_mm(), pass.to.z.to_mm()],
+        })
+    };
+    json!({
+        "code": cycle.label.to_string(), "name": { "en": table.name_en, "zh": table.name_zh },
+        "line": if here { cycle.line } else { 0 }, "settings": settings,
+        "first": index(cycle.commands.start), "end": index(cycle.commands.end),
+        "passes": cycle.passes.iter().map(row).collect::<Vec<_>>(),
+    })
+}
+
+/// A cause as the key of its sentence and what stands in it.
+fn cause_json(cause: &Cause) -> Value {
+    match cause {
+        Cause::Word(GivenWord { text, line }) => json!({ "key": "pass-by-word", "word": text, "line": line }),
+        Cause::Parameter(number) => json!({ "key": "pass-by-parameter", "number": number }),
+        Cause::Figure(first, last) if first == last => {
+            json!({ "key": "pass-by-figure-line", "first": first })
+        }
+        Cause::Figure(first, last) => json!({ "key": "pass-by-figure-lines", "first": first, "last": last }),
+    }
 }
 
 const fn severity_word(severity: Severity) -> &'static str {
@@ -405,6 +471,29 @@ mod tests {
                 code: evil.clone(),
                 ..OperationRow::default()
             }],
+            cycles: vec![CycleTable {
+                cycle: Cycle {
+                    label: CycleLabel(711),
+                    function: evil.clone(),
+                    source: 0,
+                    line: 1,
+                    start: at(40, 0),
+                    settings: Vec::new(),
+                    passes: vec![Pass {
+                        number: 3,
+                        line: 1,
+                        phase: Phase::Cut,
+                        depth: Length::ZERO,
+                        from: at(40, 0),
+                        to: at(40, -1),
+                        causes: vec![Cause::Word(GivenWord { text: evil.clone(), line: 1 })],
+                    }],
+                    commands: 1..3,
+                },
+                name_en: evil.clone(),
+                name_zh: evil.clone(),
+                setting_names: Vec::new(),
+            }],
             facts: vec![Fact { label_en: evil.clone(), label_zh: evil.clone(), value: evil.clone() }],
             diagnostics: vec![ReportDiagnostic {
                 severity: Severity::Alarm,
@@ -435,6 +524,9 @@ mod tests {
         assert!(!html.contains("<script>alert"));
         let run = run_of(&html);
         assert_eq!(run["program"][0], report.program_lines[0]);
+        let cycle = &run["cycles"][0];
+        assert_eq!((&cycle["first"], &cycle["end"], &cycle["code"]), (&json!(1), &json!(3), &json!("G71.1")));
+        assert_eq!(cycle["passes"][0]["causes"][0]["word"], report.program_lines[0]);
         assert_eq!(run["diagnostics"][0]["message"]["zh"], report.diagnostics[0].message_zh);
     }
 
@@ -507,6 +599,7 @@ mod tests {
         for attribute in ["data-text=\"", "data-title=\"", "data-label=\""] {
             keys.extend(asked(TEMPLATE, attribute));
         }
+        keys.extend(["word", "parameter", "figure-line", "figure-lines"].map(|end| format!("pass-by-{end}")));
         keys.extend(PHASES.iter().map(|phase| format!("phase-{}", phase.word())));
         for severity in [Severity::Note, Severity::Warning, Severity::Error, Severity::Alarm] {
             keys.push(format!("severity-{}", severity_word(severity)));

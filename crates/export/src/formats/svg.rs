@@ -4,6 +4,8 @@
 //! moves, so that a far home position does not shrink the work; rapids leave the frame. X is labelled as a
 //! diameter. What is drawn is bounded by [`SEGMENTS_DRAWN_MAX`].
 
+mod marks;
+
 use std::collections::HashSet;
 use std::fmt::Write;
 
@@ -12,6 +14,8 @@ use turnwright_units::write_fixed;
 use crate::Language;
 use crate::path::{Bow, Extents, PathRecorder, Point, Segment, SegmentKind};
 use crate::words::Words;
+
+pub use marks::Mark;
 
 /// Strokes in one picture; strokes that fall on the same pixels count once when there are more.
 pub const SEGMENTS_DRAWN_MAX: usize = 200_000;
@@ -48,11 +52,20 @@ pub struct PictureOptions {
     pub width_px: u32,
     /// Height in pixels.
     pub height_px: u32,
+    /// Places with a short text beside them; the view is then fitted to the cuts alone. A text that finds no room is
+    /// left out, its dot stays.
+    pub marks: Vec<Mark>,
 }
 
 impl Default for PictureOptions {
     fn default() -> Self {
-        Self { title: String::new(), language: Language::English, width_px: 1200, height_px: 720 }
+        Self {
+            title: String::new(),
+            language: Language::English,
+            width_px: 1200,
+            height_px: 720,
+            marks: Vec::new(),
+        }
     }
 }
 
@@ -72,6 +85,7 @@ pub fn write_svg(path: &PathRecorder, options: &PictureOptions) -> String {
     }
     write_origin(&mut svg, &frame);
     svg.push_str("</g>\n");
+    marks::write(&mut svg, &frame, &options.marks);
     write_heading(&mut svg, path, options, &words, strokes.incomplete || path.segments_dropped() > 0);
     svg.push_str("</svg>\n");
     svg
@@ -113,7 +127,11 @@ impl Frame {
         let (right_px, bottom_px) = (width_px - MARGIN_RIGHT_PX, height_px - MARGIN_BOTTOM_PX);
         let free_width_px = right_px - left_px - CHUCK_PX - 2.0 * PAD_PX;
         let free_height_px = bottom_px - top_px - 2.0 * PAD_PX;
-        let shown = shown_extents(path, free_width_px / free_height_px);
+        let shown = match path.cutting_extents() {
+            // What is marked is to be told apart, so the centre line may be out of sight.
+            Some(cuts) if !options.marks.is_empty() => cuts,
+            _ => shown_extents(path, free_width_px / free_height_px),
+        };
         let px_per_mm = scale_for(&shown, free_width_px, free_height_px);
         let z_middle_mm = f64::midpoint(shown.z_min_mm, shown.z_max_mm);
         let radius_middle_mm = f64::midpoint(shown.radius_min_mm, shown.radius_max_mm);
@@ -788,6 +806,28 @@ mod tests {
         assert_eq!(labels, ["\u{2212}0.2", "\u{2212}0.1", "0.0", "0.1", "0.2"]);
         let ticks = Ticks { first: 1, last: 1, digit: 5, power: 1 };
         assert_eq!(ticks.all().next(), Some((50.0, "50".to_owned())));
+    }
+
+    #[test]
+    fn marks_have_their_texts_where_there_is_room_and_dots_everywhere() {
+        let marks = |count: i32, step_mm: f64| {
+            (0..count).map(|n| Mark::new(at(40.0, -step_mm * f64::from(n)), (n + 1).to_string())).collect()
+        };
+        let drawn = |marks: Vec<Mark>| {
+            let svg = write_svg(&shaft(), &PictureOptions { marks, ..PictureOptions::default() });
+            let document = roxmltree::Document::parse(&svg).expect("well-formed");
+            let group = document.descendants().find(|node| node.attribute("class") == Some("marks"));
+            let count =
+                |name| group.map_or(0, |g| g.children().filter(|node| node.has_tag_name(name)).count());
+            (count("circle"), count("text"))
+        };
+        assert_eq!(drawn(marks(10, 3.0)), (10, 10));
+        let (dots, texts) = drawn(marks(100, 0.1));
+        assert_eq!(dots, 100);
+        assert!((10..100).contains(&texts), "{texts}");
+        assert_eq!(drawn(marks(1, 0.0)), (1, 1));
+        assert_eq!(drawn(vec![]), (0, 0));
+        assert_eq!(drawn(vec![Mark::new(at(400.0, 600.0), "far")]), (0, 0), "outside the frame");
     }
 
     #[test]

@@ -325,6 +325,8 @@ impl Core {
         if thread.run_out_shortened().is_some() {
             self.warn_block("run-out-shortened");
         }
+        let outward = if self.modal.position.x.0 < end.x.0 { Radius(-words.height.0) } else { words.height };
+        self.thread_crest = Some(end.x + words.taper + outward);
         self.start_cycle(CycleMoves::Threading(Box::new(thread)), call.code, Vec::new(), 0)
     }
 
