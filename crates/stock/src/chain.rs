@@ -1,0 +1,107 @@
+//! Edges end to end along Z: one side of a stencil.
+
+use crate::WELD_MM;
+use crate::curve::Curve;
+
+/// Edges that follow each other along Z without a gap; they need not meet in X.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Chain {
+    /// Where the first edge begins.
+    pub(crate) from: f64,
+    pub(crate) links: Vec<Link>,
+}
+
+/// An edge from the end of the one before.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Link {
+    /// Where it ends.
+    pub(crate) to: f64,
+    pub(crate) edge: Curve,
+}
+
+/// The side of a tool that is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    /// Towards the axis.
+    Lower,
+    /// Away from it.
+    Upper,
+}
+
+impl Side {
+    /// 1 where leans grow along Z on a bulging edge, −1 where they fall.
+    pub(crate) const fn turn(self) -> f64 {
+        match self {
+            Self::Lower => 1.0,
+            Self::Upper => -1.0,
+        }
+    }
+}
+
+impl Chain {
+    /// Begins again, keeping the memory.
+    pub(crate) fn restart(&mut self, from: f64) {
+        self.from = from;
+        self.links.clear();
+    }
+
+    /// Where the last edge ends.
+    pub(crate) fn to(&self) -> f64 {
+        self.links.last().map_or(self.from, |link| link.to)
+    }
+
+    /// Adds an edge up to a Z. What would be shorter than the weld is left out; the next one takes its place.
+    pub(crate) fn push(&mut self, to: f64, edge: Curve) {
+        if to - self.to() > WELD_MM {
+            self.links.push(Link { to, edge });
+        }
+    }
+
+    /// As [`Chain::push`], going on with the last edge where the new one is the same.
+    pub(crate) fn go_on(&mut self, to: f64, edge: Curve) {
+        let from = self.to();
+        match self.links.last_mut() {
+            Some(last) if last.edge.is_one_with(&edge, from, to) => last.to = to,
+            _ => self.push(to, edge),
+        }
+    }
+
+    /// The edges with where each begins and ends.
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = (f64, f64, Curve)> + '_ {
+        let starts = [self.from].into_iter().chain(self.links.iter().map(|link| link.to));
+        starts.zip(&self.links).map(|(from, link)| (from, link.to, link.edge))
+    }
+
+    /// Lowest and highest X between two Z.
+    #[inline]
+    pub(crate) fn range(&self, from: f64, to: f64) -> (f64, f64) {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut start = self.from;
+        for link in &self.links {
+            let (a, b) = (from.max(start), to.min(link.to));
+            if a < b {
+                let (l, h) = link.edge.range(a, b);
+                low = low.min(l);
+                high = high.max(h);
+            }
+            if link.to >= to {
+                break;
+            }
+            start = link.to;
+        }
+        (low, high)
+    }
+
+    /// The edge at a Z.
+    #[inline]
+    pub(crate) fn edge(&self, z: f64) -> Curve {
+        let link = self.links.iter().find(|link| z <= link.to).or(self.links.last());
+        link.map_or(Curve::level(f64::NAN), |link| link.edge)
+    }
+
+    /// The same on the other side of the axis, written over another chain.
+    pub(crate) fn mirror_into(&self, other: &mut Self) {
+        other.restart(self.from);
+        other.links.extend(self.links.iter().map(|link| Link { to: link.to, edge: link.edge.mirrored() }));
+    }
+}

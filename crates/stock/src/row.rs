@@ -1,0 +1,283 @@
+//! Slabs in a row along Z, in chunks, so that a cut costs what it changes and not what the whole section holds.
+//!
+//! Invariants: slabs are in order, do not overlap, are wider than the weld and hold at least one band; the bands of a
+//! slab are in order from the axis outwards and do not overlap; no chunk is empty. Two slabs that touch share the
+//! very same number. Where nothing is, no slab is.
+
+use std::ops::Range;
+
+use crate::WELD_MM;
+use crate::band::Band;
+use crate::knife::Knife;
+use crate::removed::Removed;
+
+/// A chunk with more slabs is parted. Below a few dozen, moving slabs about costs no more than looking at them.
+const CHUNK_SLABS_MAX: usize = 48;
+
+/// Between two Z: a stack of bands.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slab {
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    /// Lowest X of its bands.
+    pub(crate) low: f64,
+    /// Highest X of its bands.
+    pub(crate) high: f64,
+    /// Where its bands end in the list of the chunk; they begin where those of the slab before end.
+    end: u32,
+}
+
+/// A run of slabs with their bands.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Run {
+    slabs: Vec<Slab>,
+    bands: Vec<Band>,
+}
+
+/// A run that is not empty, and the rectangle round it.
+#[derive(Clone, Debug)]
+struct Chunk {
+    from: f64,
+    to: f64,
+    low: f64,
+    high: f64,
+    run: Run,
+}
+
+/// All slabs of a section.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Row {
+    chunks: Vec<Chunk>,
+    /// Runs that were emptied, with their memory.
+    spare: Vec<Run>,
+}
+
+impl Run {
+    pub(crate) fn clear(&mut self) {
+        self.slabs.clear();
+        self.bands.clear();
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.slabs.len()
+    }
+
+    fn first_band(&self, slab: usize) -> usize {
+        if slab == 0 { 0 } else { self.slabs[slab - 1].end as usize }
+    }
+
+    pub(crate) fn slab(&self, index: usize) -> (&Slab, &[Band]) {
+        let slab = &self.slabs[index];
+        (slab, &self.bands[self.first_band(index)..slab.end as usize])
+    }
+
+    pub(crate) fn slabs(&self) -> impl Iterator<Item = (&Slab, &[Band])> {
+        (0..self.len()).map(|index| self.slab(index))
+    }
+
+    /// Adds a band to the slab that [`Run::end_slab`] will close.
+    #[inline]
+    pub(crate) fn push_band(&mut self, band: Band) {
+        self.bands.push(band);
+    }
+
+    /// Closes a slab with the bands pushed since the last; without any there is no slab. A slab that goes on as the
+    /// one before is put to it.
+    #[inline]
+    pub(crate) fn end_slab(&mut self, from: f64, to: f64) {
+        let first = self.first_band(self.len());
+        let bands = &self.bands[first..];
+        let (Some(lowest), Some(highest)) = (bands.first(), bands.last()) else { return };
+        let (low, high) = (lowest.floor.range(from, to).0, highest.roof.range(from, to).1);
+        let before = if self.slabs.is_empty() { 0 } else { self.first_band(self.len() - 1) };
+        if let Some(last) = self.slabs.last_mut()
+            && last.to == from
+            && self.bands[before..first].len() == bands.len()
+            && self.bands[before..first].iter().zip(bands).all(|(a, b)| a.is_one_with(b, from, to))
+        {
+            last.to = to;
+            last.low = last.low.min(low);
+            last.high = last.high.max(high);
+            self.bands.truncate(first);
+            return;
+        }
+        self.slabs.push(Slab { from, to, low, high, end: self.bands.len() as u32 });
+    }
+
+    /// Adds a slab as it is.
+    fn copy(&mut self, slab: &Slab, bands: &[Band]) {
+        self.bands.extend_from_slice(bands);
+        self.end_slab(slab.from, slab.to);
+    }
+
+    fn truncate(&mut self, slabs: usize) {
+        self.slabs.truncate(slabs);
+        self.bands.truncate(self.first_band(slabs));
+    }
+
+    /// Puts another run in the place of some slabs.
+    fn replace(&mut self, slabs: Range<usize>, with: &Self) {
+        let bands = self.first_band(slabs.start)..self.first_band(slabs.end);
+        let (start, behind) = (bands.start, slabs.start + with.len());
+        let grown = with.bands.len() as i64 - bands.len() as i64;
+        self.bands.splice(bands, with.bands.iter().copied());
+        self.slabs.splice(slabs.clone(), with.slabs.iter().copied());
+        self.slabs[slabs.start..behind].iter_mut().for_each(|slab| slab.end += start as u32);
+        self.slabs[behind..].iter_mut().for_each(|slab| slab.end = (i64::from(slab.end) + grown) as u32);
+    }
+
+    /// Moves the slabs from an index on to the end of another run.
+    fn part(&mut self, from: usize, other: &mut Self) {
+        let first = self.first_band(from);
+        let shift = other.bands.len() as u32;
+        other.bands.extend_from_slice(&self.bands[first..]);
+        let moved = self.slabs[from..].iter();
+        other.slabs.extend(moved.map(|slab| Slab { end: slab.end - first as u32 + shift, ..*slab }));
+        self.truncate(from);
+    }
+}
+
+impl Chunk {
+    fn new(run: Run) -> Self {
+        let mut chunk = Self { from: 0.0, to: 0.0, low: 0.0, high: 0.0, run };
+        chunk.measure();
+        chunk
+    }
+
+    /// See [`Row::carve`]. Slabs beside changed ones are written anew too, so that what is now the same becomes one;
+    /// those further off are not touched.
+    fn carve(&mut self, knife: &mut Knife<'_>, left: &mut Run) -> bool {
+        let (from, to) = (knife.from, knife.to);
+        left.clear();
+        let run = &self.run;
+        let first = run.slabs.partition_point(|slab| slab.to <= from + WELD_MM);
+        let mut written: Option<Range<usize>> = None;
+        let mut is_changed = false;
+        for index in first..run.len() {
+            let (slab, bands) = run.slab(index);
+            if slab.from >= to - WELD_MM {
+                break;
+            }
+            if knife.misses(slab.from, slab.to, slab.low, slab.high) {
+                continue;
+            }
+            let before = index.saturating_sub(1);
+            let written = written.get_or_insert(before..before);
+            (written.end..index)
+                .map(|index| run.slab(index))
+                .for_each(|(slab, bands)| left.copy(slab, bands));
+            written.end = index + 1;
+            is_changed |= knife.carve(slab, bands, left);
+        }
+        let Some(mut written) = written.filter(|_| is_changed) else { return false };
+        if written.end < run.len() {
+            let (slab, bands) = run.slab(written.end);
+            left.copy(slab, bands);
+            written.end += 1;
+        }
+        self.run.replace(written, left);
+        self.measure();
+        true
+    }
+
+    fn measure(&mut self) {
+        let slabs = &self.run.slabs;
+        let (Some(first), Some(last)) = (slabs.first(), slabs.last()) else { return };
+        (self.from, self.to) = (first.from, last.to);
+        self.low = slabs.iter().fold(f64::INFINITY, |low, slab| low.min(slab.low));
+        self.high = slabs.iter().fold(f64::NEG_INFINITY, |high, slab| high.max(slab.high));
+    }
+}
+
+impl Row {
+    /// The slabs with their bands, along Z.
+    pub(crate) fn slabs(&self) -> impl Iterator<Item = (&Slab, &[Band])> {
+        self.chunks.iter().flat_map(|chunk| chunk.run.slabs())
+    }
+
+    /// Those that reach between two Z, or touch them.
+    pub(crate) fn slabs_between(&self, from: f64, to: f64) -> impl Iterator<Item = (&Slab, &[Band])> {
+        let first = self.chunks.partition_point(|chunk| chunk.to < from);
+        let chunks = self.chunks[first..].iter().take_while(move |chunk| chunk.from <= to);
+        chunks
+            .flat_map(move |chunk| {
+                let first = chunk.run.slabs.partition_point(|slab| slab.to < from);
+                (first..chunk.run.len()).map(|index| chunk.run.slab(index))
+            })
+            .take_while(move |(slab, _)| slab.from <= to)
+    }
+
+    /// How many slabs there are.
+    pub(crate) fn len(&self) -> usize {
+        self.chunks.iter().map(|chunk| chunk.run.len()).sum()
+    }
+
+    /// Adds a run behind all others; it begins no earlier than they end.
+    pub(crate) fn append(&mut self, run: &mut Run) {
+        while run.len() > 0 {
+            let mut rest = Run::default();
+            run.part(run.len().min(CHUNK_SLABS_MAX / 2), &mut rest);
+            self.chunks.push(Chunk::new(std::mem::replace(run, rest)));
+        }
+    }
+
+    /// What a knife would take, without taking it; `left` is memory for what would be left.
+    pub(crate) fn probe(&self, knife: &mut Knife<'_>, left: &mut Run) -> Removed {
+        let (from, to) = (knife.from, knife.to);
+        let first = self.chunks.partition_point(|chunk| chunk.to <= from + WELD_MM);
+        let reached = self.chunks[first..].iter().take_while(|chunk| chunk.from < to - WELD_MM);
+        for chunk in reached {
+            if knife.misses(chunk.from, chunk.to, chunk.low, chunk.high) {
+                continue;
+            }
+            for (slab, bands) in chunk.run.slabs() {
+                if !knife.misses(slab.from, slab.to, slab.low, slab.high) {
+                    left.clear();
+                    knife.carve(slab, bands, left);
+                }
+            }
+        }
+        knife.removed
+    }
+
+    /// Puts in the place of each slab what a knife leaves of it; `left` is memory for that.
+    pub(crate) fn carve(&mut self, knife: &mut Knife<'_>, left: &mut Run) {
+        let (from, to) = (knife.from, knife.to);
+        let mut index = self.chunks.partition_point(|chunk| chunk.to <= from + WELD_MM);
+        let mut emptied: Option<usize> = None;
+        while let Some(chunk) = self.chunks.get_mut(index).filter(|chunk| chunk.from < to - WELD_MM) {
+            if !knife.misses(chunk.from, chunk.to, chunk.low, chunk.high) && chunk.carve(knife, left) {
+                if chunk.run.len() == 0 {
+                    emptied.get_or_insert(index);
+                } else if chunk.run.len() > CHUNK_SLABS_MAX {
+                    self.part(index);
+                    index += 1;
+                }
+            }
+            index += 1;
+        }
+        if let Some(first) = emptied {
+            self.drop_empty(first..index);
+        }
+    }
+
+    /// Drops the empty chunks of a range, but keeps their memory.
+    fn drop_empty(&mut self, range: Range<usize>) {
+        let mut kept = range.start;
+        for index in range.clone() {
+            if self.chunks[index].run.len() > 0 {
+                self.chunks.swap(kept, index);
+                kept += 1;
+            }
+        }
+        self.spare.extend(self.chunks.drain(kept..range.end).map(|chunk| chunk.run));
+    }
+
+    fn part(&mut self, index: usize) {
+        let mut second = self.spare.pop().unwrap_or_default();
+        let chunk = &mut self.chunks[index];
+        chunk.run.part(chunk.run.len() / 2, &mut second);
+        chunk.measure();
+        self.chunks.insert(index + 1, Chunk::new(second));
+    }
+}

@@ -1,0 +1,141 @@
+//! What a tool passes over on its way: the shape that is taken away.
+//!
+//! A sweep is one [`Stencil`] for each convex part of the tool and each quarter of an arc. A stencil is all between
+//! a lower and an upper chain of edges; both are exact, lines and arcs again ([`crate::slide`], [`crate::swing`]).
+//! A sweep is made to be used again: `line` and `arc` write over the last one in the memory that is there.
+
+use turnwright_geometry::{Bend, Bounds, Point, Vector};
+
+use crate::WELD_MM;
+use crate::chain::{Chain, Side};
+use crate::curve::Curve;
+use crate::cutter::{Convex, Cutter};
+use crate::decompose::half_circles;
+use crate::slide::slide;
+use crate::swing::Swing;
+
+/// What a tool passes over on its way.
+#[derive(Clone, Debug, Default)]
+pub struct Sweep {
+    stencils: Vec<Stencil>,
+    /// How many of them belong to this sweep; the others keep their memory for the next.
+    used: usize,
+    swing: Swing,
+}
+
+/// All between two chains over the same Z.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stencil {
+    pub(crate) lower: Chain,
+    pub(crate) upper: Chain,
+}
+
+impl Sweep {
+    /// An empty sweep; it passes over nothing.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// A tool at rest.
+    pub fn rest(&mut self, cutter: &Cutter, at: Point) -> &mut Self {
+        self.line(cutter, at, at)
+    }
+
+    /// A tool whose programmed point moves along a line.
+    pub fn line(&mut self, cutter: &Cutter, from: Point, to: Point) -> &mut Self {
+        self.used = 0;
+        if !is_sound(from) || !is_sound(to) {
+            return self;
+        }
+        let (left, right) = if from.z <= to.z { (from, to) } else { (to, from) };
+        for part in &cutter.parts {
+            self.add(|stencil, _| stencil.slide(part, left, right));
+        }
+        self
+    }
+
+    /// A tool whose programmed point moves along an arc; start and end the same make a full circle.
+    ///
+    /// Where start and end lie at different distances from the centre, the circle with the nearest centre through
+    /// both is taken.
+    pub fn arc(&mut self, cutter: &Cutter, from: Point, to: Point, bend: Bend) -> &mut Self {
+        self.used = 0;
+        if !is_sound(from) || !is_sound(to) || !is_sound(bend.centre) {
+            return self;
+        }
+        if from.distance(to) > WELD_MM && from.distance(bend.centre).min(to.distance(bend.centre)) <= WELD_MM
+        {
+            return self.line(cutter, from, to);
+        }
+        let bend = Bend { centre: evened(from, to, bend.centre), ..bend };
+        half_circles(from, to, bend, |start, end, path| {
+            for part in &cutter.parts {
+                self.add(|stencil, swing| stencil.swing(part, &path, start.min(end), start.max(end), swing));
+            }
+        });
+        self
+    }
+
+    fn add(&mut self, write: impl FnOnce(&mut Stencil, &mut Swing)) {
+        if self.used == self.stencils.len() {
+            self.stencils.push(Stencil::default());
+        }
+        write(&mut self.stencils[self.used], &mut self.swing);
+        self.used += 1;
+    }
+
+    pub(crate) fn stencils(&self) -> &[Stencil] {
+        &self.stencils[..self.used]
+    }
+
+    /// The upright rectangle round all that is passed over; nothing when nothing is.
+    pub fn bounds(&self) -> Option<Bounds> {
+        let corners = self.stencils().iter().flat_map(|stencil| {
+            let (from, to) = (stencil.lower.from, stencil.lower.to());
+            let (low, high) = (stencil.lower.range(from, to).0, stencil.upper.range(from, to).1);
+            [Point::new(low, from), Point::new(high, to)]
+        });
+        corners.fold(None, |bounds, corner| {
+            Some(bounds.map_or(Bounds { min: corner, max: corner }, |bounds: Bounds| bounds.with(corner)))
+        })
+    }
+}
+
+impl Stencil {
+    fn slide(&mut self, part: &Convex, left: Point, right: Point) {
+        for (side, chain) in [(Side::Lower, &mut self.lower), (Side::Upper, &mut self.upper)] {
+            slide(chain, part, side, left, right);
+        }
+    }
+
+    fn swing(&mut self, part: &Convex, path: &Curve, from: f64, to: f64, swing: &mut Swing) {
+        for (side, chain) in [(Side::Lower, &mut self.lower), (Side::Upper, &mut self.upper)] {
+            swing.write(chain, part, side, path, from, to);
+        }
+    }
+
+    /// The same on the other side of the axis.
+    pub(crate) fn mirror_into(&self, other: &mut Self) {
+        self.lower.mirror_into(&mut other.upper);
+        self.upper.mirror_into(&mut other.lower);
+    }
+}
+
+/// A place that a lathe can reach: places that are not numbers pass over nothing.
+fn is_sound(place: Point) -> bool {
+    use turnwright_geometry::OUTLINE_MM_MAX as MAX;
+    place.x.abs() <= MAX && place.z.abs() <= MAX
+}
+
+/// The centre as far from one place as from the other, next to a centre that is nearly so.
+fn evened(from: Point, to: Point, centre: Point) -> Point {
+    let chord = Vector::between(from, to);
+    let length = chord.length();
+    if length <= WELD_MM {
+        return centre;
+    }
+    let middle = chord.times(0.5).from(from);
+    let off = Vector::between(middle, centre);
+    let along = (off.x * chord.x + off.z * chord.z) / length;
+    chord.times(-along / length).from(centre)
+}

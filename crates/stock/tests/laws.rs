@@ -1,0 +1,99 @@
+//! Laws on seeded random tools and ways, many of them on a coarse grid, where edges lie on each other, touch and meet
+//! in corners all the time.
+
+mod random;
+
+use random::{Random, Way, point};
+use turnwright_geometry::{Outline, Point};
+use turnwright_stock::{Cutter, Removed, Section, Sweep};
+
+fn cut(section: &mut Section, sweep: &mut Sweep, tool: &Outline, way: &Way) -> Removed {
+    section.cut(way.sweep(sweep, &Cutter::new(tool)))
+}
+
+/// Some tools and ways, and a blank.
+fn job(random: &mut Random, count: usize) -> (Section, Vec<(Outline, Way)>) {
+    let blank =
+        if random.chance(2) { Section::bar(20.0, -40.0, 0.0) } else { Section::tube(6.0, 20.0, -40.0, 0.0) };
+    let cuts = (0..count).map(|_| (random.tool(), random.way())).collect();
+    (blank.expect("a blank"), cuts)
+}
+
+#[test]
+fn what_is_passed_over_is_gone_and_the_rest_is_still_there() {
+    for seed in 1..=40 {
+        let mut random = Random::new(seed);
+        let (blank, cuts) = job(&mut random, 6);
+        let (mut section, mut sweep) = (blank.clone(), Sweep::new());
+        for (tool, way) in &cuts {
+            cut(&mut section, &mut sweep, tool, way);
+        }
+        for _ in 0..25 {
+            let place = point(random.between(0.0, 21.0), random.between(-41.0, 1.0));
+            // The tool takes what it passes over on the other side of the axis, too.
+            let mirror = Point { x: -place.x, ..place };
+            let margin = |(tool, way): &(Outline, Way)| {
+                random::clearance(tool, way, place).min(random::clearance(tool, way, mirror))
+            };
+            let clearance = cuts.iter().map(margin).fold(f64::INFINITY, f64::min);
+            let expected = blank.contains(place) && clearance > 0.0;
+            // Too near to an edge for places tried one by one.
+            if clearance.abs() < 0.05 {
+                continue;
+            }
+            assert_eq!(section.contains(place), expected, "seed {seed}, {place:?}, clearance {clearance}");
+        }
+    }
+}
+
+#[test]
+fn cuts_may_come_in_any_order_and_twice() {
+    for seed in 1..=1_500 {
+        let mut random = Random::new(seed);
+        let (blank, mut cuts) = job(&mut random, 8);
+        let mut sweep = Sweep::new();
+        let mut areas = Vec::new();
+        for _ in 0..3 {
+            let mut section = blank.clone();
+            let (mut area, mut volume) = (section.area_mm2(), section.volume_mm3());
+            for (tool, way) in &cuts {
+                let removed = cut(&mut section, &mut sweep, tool, way);
+                assert!(removed.area_mm2 >= -1e-12, "seed {seed}: {removed:?}");
+                area -= removed.area_mm2;
+                volume -= removed.volume_mm3;
+            }
+            // What was taken and what is left are the whole.
+            assert!((section.area_mm2() - area).abs() < 1e-9, "seed {seed}: {}", section.area_mm2() - area);
+            assert!((section.volume_mm3() - volume).abs() < 1e-6, "seed {seed}");
+            areas.push(area);
+            for (tool, way) in &cuts {
+                way.sweep(&mut sweep, &Cutter::new(tool));
+                let left = section.touches(&sweep).map_or(0.0, |contact| contact.area_mm2);
+                let removed = section.cut(&sweep);
+                assert!((left - removed.area_mm2).abs() < 1e-15, "seed {seed}");
+                assert!(removed.area_mm2 < 1e-7, "seed {seed}: again {removed:?}");
+            }
+            random.shuffle(&mut cuts);
+        }
+        for area in &areas {
+            assert!((area - areas[0]).abs() < 1e-7, "seed {seed}: {areas:?}");
+        }
+    }
+}
+
+#[test]
+fn a_way_in_pieces_is_the_whole_way() {
+    for seed in 1..=600 {
+        let mut random = Random::new(seed);
+        let (blank, cuts) = job(&mut random, 1);
+        let (tool, way) = &cuts[0];
+        let mut sweep = Sweep::new();
+        let (mut whole, mut parted) = (blank.clone(), blank);
+        cut(&mut whole, &mut sweep, tool, way);
+        for piece in way.pieces(1 + random.below(6)) {
+            cut(&mut parted, &mut sweep, tool, &piece);
+        }
+        let difference = whole.area_mm2() - parted.area_mm2();
+        assert!(difference.abs() < 1e-7, "seed {seed}: {difference}");
+    }
+}
