@@ -12,6 +12,8 @@
 //! is finite; a cut costs what lies in its window, not what the section holds, and allocates nothing once its memory
 //! has grown. Edges nearer than [`WELD_MM`] are one.
 //!
+//! [`Machining`] applies canonical commands to a section and tells of crashes.
+//!
 //! Deliberately not here: frames and offsets, feeds and time, pixels, words.
 
 mod band;
@@ -20,6 +22,7 @@ mod curve;
 mod cutter;
 mod decompose;
 mod knife;
+pub mod machining;
 mod pieces;
 mod removed;
 mod row;
@@ -29,6 +32,7 @@ mod sweep;
 mod swing;
 
 pub use cutter::{Cutter, HOLLOW_MM};
+pub use machining::Machining;
 pub use pieces::Piece;
 pub use removed::{Contact, Removed};
 pub use section::{Section, SectionFault};

@@ -62,8 +62,12 @@ impl Bonds {
         self.0[a.max(b)] = a.min(b);
     }
 
-    fn count(&self) -> usize {
-        self.0.iter().enumerate().filter(|(index, root)| index == *root).count()
+    /// Whether all the chosen bands are of one piece.
+    fn join(&mut self, chosen: impl Iterator<Item = bool>) -> bool {
+        let mut chosen = chosen.enumerate().filter(|(_, is_chosen)| *is_chosen).map(|(index, _)| index);
+        let Some(first) = chosen.next() else { return true };
+        let root = self.root(first);
+        chosen.all(|index| self.root(index) == root)
     }
 }
 
@@ -73,9 +77,26 @@ fn bond(a: &Band, b: &Band, z: f64) -> f64 {
 }
 
 impl Row {
-    /// Whether the material between two Z, and what touches it, hangs together there.
+    /// Whether all material that lies between two Z, or touches them, hangs together. It is looked at in ever wider
+    /// neighbourhoods, so that a joint round the next corner costs no look at the whole.
     pub(crate) fn holds_together(&self, from: f64, to: f64) -> bool {
-        Bonds::of(self.slabs_between(from, to)).count() <= 1
+        let Some((start, end)) = self.ends() else { return true };
+        let mut margin = 0.0;
+        loop {
+            let (low, high) = (from - margin, to + margin);
+            let mut bonds = Bonds::of(self.slabs_between(low, high));
+            let near = self.slabs_between(low, high).flat_map(|(slab, bands)| {
+                let is_near = slab.to >= from && slab.from <= to;
+                bands.iter().map(move |_| is_near)
+            });
+            if bonds.join(near) {
+                return true;
+            }
+            if low <= start && end <= high {
+                return false;
+            }
+            margin = 4.0 * margin + (to - from) + 1.0;
+        }
     }
 }
 

@@ -207,6 +207,11 @@ impl Row {
             .take_while(move |(slab, _)| slab.from <= to)
     }
 
+    /// Where the first slab begins and the last ends.
+    pub(crate) fn ends(&self) -> Option<(f64, f64)> {
+        Some((self.chunks.first()?.from, self.chunks.last()?.to))
+    }
+
     /// How many slabs there are.
     pub(crate) fn len(&self) -> usize {
         self.chunks.iter().map(|chunk| chunk.run.len()).sum()

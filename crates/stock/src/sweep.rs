@@ -4,7 +4,7 @@
 //! a lower and an upper chain of edges; both are exact, lines and arcs again ([`crate::slide`], [`crate::swing`]).
 //! A sweep is made to be used again: `line` and `arc` write over the last one in the memory that is there.
 
-use turnwright_geometry::{Bend, Bounds, Point, Vector};
+use turnwright_geometry::{Bend, Bounds, Point, Segment, Vector};
 
 use crate::WELD_MM;
 use crate::chain::{Chain, Side};
@@ -74,6 +74,14 @@ impl Sweep {
             }
         });
         self
+    }
+
+    /// A tool along a line or an arc.
+    pub fn along(&mut self, cutter: &Cutter, way: &Segment) -> &mut Self {
+        match way.bend {
+            None => self.line(cutter, way.start, way.end),
+            Some(bend) => self.arc(cutter, way.start, way.end, bend),
+        }
     }
 
     fn add(&mut self, write: impl FnOnce(&mut Stencil, &mut Swing)) {

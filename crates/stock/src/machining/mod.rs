@@ -1,0 +1,375 @@
+//! Commands applied to the stock: what is cut, and what is hit on the way.
+//!
+//! In: canonical commands in order of execution, the shapes of the tools by number, what stands around the work. Out: the
+//! section that is left, what each command removed, and [`Event`]s as data, each with its command's origin, its place and
+//! its depth.
+//!
+//! What is taken for granted:
+//! * The stock stands where the program's numbers say: a change of work zero moves it along.
+//! * The tool is the last one called; its outlines are relative to the programmed point, with nose compensation too.
+//! * A cutting edge that hits the stock in a rapid move takes what it hits, so that one crash is told once; a holder that
+//!   hits it takes nothing.
+//! * A thread is cut in the half-plane that passes the tool when the spindle stands at zero: the insert at rest once a
+//!   turn, in phase with its start angle, so that the section shows true grooves, several starts included, and their
+//!   volume is that of the helix.
+//! * What loses its hold of the chuck side falls and is gone.
+//!
+//! Invariant: memory does not grow with the number of commands, but only with the section's edges.
+
+mod event;
+mod threads;
+mod ways;
+
+use std::collections::BTreeMap;
+
+use turnwright_canon::{Action, Command, Interpolation, Origin, SectionPlace, SpindleState};
+use turnwright_geometry::{Outline, Point, Segment};
+use turnwright_units::{Position, WorkTip};
+
+pub use self::event::{Event, EventKind, Obstacle};
+use self::threads::{Phase, ThreadMarks};
+pub use self::threads::{THREADS_MAX, TURNS_MAX, ThreadMark};
+use self::ways::{point, rapid_ways, ways};
+use crate::removed::{Contact, Removed};
+use crate::section::{Section, SectionFault};
+use crate::{Cutter, Sweep};
+
+/// A contact that is less deep rubs, and is no event: a micrometre, above all rounding of commands.
+pub const GRAZE_MM: f64 = 1e-3;
+
+/// The outlines of a tool, relative to its programmed point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ToolShape {
+    /// What cuts.
+    pub cutting: Outline,
+    /// What must not touch anything.
+    pub body: Option<Outline>,
+}
+
+/// How fast the slides position, mm of radius and mm a minute: it shapes rapids whose axes move each at its own rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RapidRates {
+    /// Of X.
+    pub x_mm_per_min: f64,
+    /// Of Z.
+    pub z_mm_per_min: f64,
+}
+
+#[derive(Clone, Debug)]
+struct Tool {
+    cutting: Cutter,
+    body: Option<Cutter>,
+}
+
+/// The stock, the tools, and where they are.
+#[derive(Clone, Debug)]
+pub struct Machining {
+    section: Section,
+    /// Z of the end that the chuck holds.
+    held_z: f64,
+    tools: BTreeMap<u32, Tool>,
+    obstacles: Vec<(Obstacle, Section)>,
+    rates: RapidRates,
+    at: Position<WorkTip>,
+    place: SectionPlace,
+    is_turned: bool,
+    tool: Option<u32>,
+    /// The tool without a shape that was told of last.
+    unknown: Option<u32>,
+    spindle: SpindleState,
+    phase: Phase,
+    threads: ThreadMarks,
+    sweep: Sweep,
+}
+
+impl Machining {
+    /// Stock that the chuck holds at its end of lowest Z, and a tool at `start` whose number is not known yet.
+    pub fn new(section: Section, start: Position<WorkTip>, rates: RapidRates) -> Self {
+        Self {
+            held_z: section.bounds().map_or(0.0, |bounds| bounds.min.z),
+            section,
+            tools: BTreeMap::new(),
+            obstacles: Vec::new(),
+            rates,
+            at: start,
+            place: SectionPlace::default(),
+            is_turned: true,
+            tool: None,
+            unknown: None,
+            spindle: SpindleState::Stop,
+            phase: Phase::default(),
+            threads: ThreadMarks::default(),
+            sweep: Sweep::new(),
+        }
+    }
+
+    /// The shape of a tool by number; in the place of the one before.
+    pub fn set_tool(&mut self, number: u32, shape: &ToolShape) {
+        let tool = Tool { cutting: Cutter::new(&shape.cutting), body: shape.body.as_ref().map(Cutter::new) };
+        self.tools.insert(number, tool);
+    }
+
+    /// Something that no tool may touch, by its half-section.
+    ///
+    /// # Errors
+    /// [`SectionFault`] when it reaches below the axis.
+    pub fn add_obstacle(&mut self, obstacle: Obstacle, outline: &Outline) -> Result<(), SectionFault> {
+        self.obstacles.push((obstacle, Section::new(outline)?));
+        Ok(())
+    }
+
+    /// What is left.
+    pub const fn section(&self) -> &Section {
+        &self.section
+    }
+
+    /// The threads cut so far.
+    pub fn threads(&self) -> &[ThreadMark] {
+        self.threads.marks()
+    }
+
+    /// Applies a command, tells of what happens, and gives what was removed.
+    pub fn advance(&mut self, command: &Command, tell: &mut dyn FnMut(Event)) -> Removed {
+        let from = self.at;
+        if let Some(end) = self.place.end_of(&command.action) {
+            self.at = end;
+        }
+        let mut teller = Teller { origin: &command.origin, tell, told: None };
+        if !matches!(command.action, Action::Thread { .. }) {
+            self.phase = Phase::default();
+        }
+        match &command.action {
+            Action::Rapid { path, .. } => {
+                let mut removed = Removed::default();
+                for way in rapid_ways(point(from), point(self.at), *path, self.rates) {
+                    removed = removed.and(self.rapid(&way, &mut teller));
+                }
+                removed
+            }
+            Action::Feed { shape, others, .. } => {
+                let is_turned = self.is_turned && others.is_none() && ways::is_in_section(shape);
+                let mut removed = Removed::default();
+                for way in ways(from, self.at, shape) {
+                    removed = removed.and(if is_turned {
+                        self.feed(&way, &mut teller)
+                    } else {
+                        self.feed_across(&way, &mut teller)
+                    });
+                }
+                removed
+            }
+            Action::Thread { .. } => self.thread(from, &command.action, &mut teller),
+            Action::Relocate { to, .. } => {
+                self.at = *to;
+                Removed::default()
+            }
+            action => {
+                self.remember(action);
+                Removed::default()
+            }
+        }
+    }
+
+    /// What is no move, but changes what moves do.
+    fn remember(&mut self, action: &Action) {
+        match action {
+            Action::Tool { tool, .. } => self.tool = Some(*tool),
+            Action::Spindle { state, .. } => self.spindle = *state,
+            Action::Interpolation(interpolation) => self.is_turned = *interpolation == Interpolation::Normal,
+            Action::Rapid { .. }
+            | Action::Feed { .. }
+            | Action::Thread { .. }
+            | Action::Relocate { .. }
+            | Action::Coupling(_)
+            | Action::PathMode(_)
+            | Action::Dwell(_)
+            | Action::Coolant(_)
+            | Action::Auxiliary { .. }
+            | Action::SecondAuxiliary { .. }
+            | Action::Stop
+            | Action::OptionalStop
+            | Action::End
+            | Action::Message(_)
+            | Action::Output(_) => {}
+        }
+    }
+
+    fn rapid(&mut self, way: &Segment, teller: &mut Teller<'_>) -> Removed {
+        let Some(tool) = shape(&self.tools, self.tool, &mut self.unknown, None) else {
+            return Removed::default();
+        };
+        self.sweep.along(&tool.cutting, way);
+        let mut removed = Removed::default();
+        if let Some(contact) = deep(self.section.touches(&self.sweep)) {
+            let place = || first_touch(&self.section, &tool.cutting, way);
+            teller.tell(EventKind::RapidIntoStock, Some(contact), place);
+            removed = self.section.cut(&self.sweep);
+        }
+        self.look_around(way, teller);
+        self.let_fall(&removed, way.end, teller);
+        removed
+    }
+
+    fn feed(&mut self, way: &Segment, teller: &mut Teller<'_>) -> Removed {
+        let Some(tool) = shape(&self.tools, self.tool, &mut self.unknown, Some((way, &mut *teller))) else {
+            return Removed::default();
+        };
+        let removed = self.section.cut(self.sweep.along(&tool.cutting, way));
+        self.judge(&removed, way, teller);
+        removed
+    }
+
+    /// What follows from a cut.
+    fn judge(&mut self, removed: &Removed, way: &Segment, teller: &mut Teller<'_>) {
+        if self.spindle == SpindleState::Stop
+            && let Some(contact) = deep(removed.contact())
+        {
+            teller.tell(EventKind::SpindleStopped, Some(contact), || way.start);
+        }
+        self.look_around(way, teller);
+        self.let_fall(removed, way.end, teller);
+    }
+
+    /// A cut that the turning of the spindle does not spread round the part: told, and not taken away.
+    fn feed_across(&mut self, way: &Segment, teller: &mut Teller<'_>) -> Removed {
+        if let Some(tool) = self.tool.and_then(|number| self.tools.get(&number))
+            && let Some(contact) = deep(self.section.touches(self.sweep.along(&tool.cutting, way)))
+        {
+            teller.tell(EventKind::NotTurned, Some(contact), || way.start);
+        }
+        Removed::default()
+    }
+
+    fn thread(&mut self, from: Position<WorkTip>, action: &Action, teller: &mut Teller<'_>) -> Removed {
+        let Action::Thread { shape: form, lead, lead_end, start_angle, is_chained, .. } = action else {
+            return Removed::default();
+        };
+        let all = Segment { start: point(from), end: point(self.at), bend: None };
+        let Some(tool) = shape(&self.tools, self.tool, &mut self.unknown, Some((&all, &mut *teller))) else {
+            return Removed::default();
+        };
+        if !is_chained {
+            self.phase = Phase::starting_at(*start_angle);
+        }
+        let lead_mm = (lead.0.to_mm(), lead_end.unwrap_or(*lead).0.to_mm());
+        let mut removed = Removed::default();
+        for way in ways(from, self.at, form) {
+            let Some(turns) = self.phase.turns(&way, lead_mm) else {
+                // So fine that it is no thread: a plain cut.
+                removed = removed.and(self.section.cut(self.sweep.along(&tool.cutting, &way)));
+                continue;
+            };
+            for place in turns {
+                removed = removed.and(self.section.cut(self.sweep.rest(&tool.cutting, place)));
+            }
+        }
+        if let Some(bounds) = removed.bounds {
+            let number = self.tool.unwrap_or_default();
+            self.threads.note(number, lead_mm.0, *start_angle, &all, bounds);
+        }
+        self.judge(&removed, &all, teller);
+        removed
+    }
+
+    /// Holder against stock, and all of the tool against what stands around.
+    fn look_around(&mut self, way: &Segment, teller: &mut Teller<'_>) {
+        let Some(tool) = self.tool.and_then(|number| self.tools.get(&number)) else { return };
+        if let Some(body) = &tool.body
+            && let Some(contact) = deep(self.section.touches(self.sweep.along(body, way)))
+        {
+            let place = || first_touch(&self.section, body, way);
+            teller.tell(EventKind::BodyIntoStock, Some(contact), place);
+        }
+        if self.obstacles.is_empty() {
+            return;
+        }
+        for part in [Some(&tool.cutting), tool.body.as_ref()].into_iter().flatten() {
+            self.sweep.along(part, way);
+            for (obstacle, section) in &self.obstacles {
+                if let Some(contact) = deep(section.touches(&self.sweep)) {
+                    let place = || first_touch(section, part, way);
+                    teller.tell(EventKind::IntoObstacle(*obstacle), Some(contact), place);
+                }
+            }
+        }
+    }
+
+    /// Drops what the chuck no longer holds.
+    fn let_fall(&mut self, removed: &Removed, at: Point, teller: &mut Teller<'_>) {
+        if !removed.may_part {
+            return;
+        }
+        let held_z = self.held_z;
+        let is_held = |min_z: f64| min_z <= held_z + GRAZE_MM;
+        let pieces = self.section.pieces();
+        if pieces.len() < 2 || !pieces.iter().any(|piece| is_held(piece.bounds.min.z)) {
+            return;
+        }
+        for piece in self.section.drop_pieces(|piece| !is_held(piece.bounds.min.z)) {
+            let contact = Contact {
+                bounds: piece.bounds,
+                depth_mm: 0.0,
+                area_mm2: piece.area_mm2,
+                volume_mm3: piece.volume_mm3,
+            };
+            teller.tell(EventKind::CutOff, Some(contact), || at);
+        }
+    }
+}
+
+/// Puts the origin to events, and tells of each kind once in a row: where on the ways of a command it begins.
+struct Teller<'a> {
+    origin: &'a Origin,
+    tell: &'a mut dyn FnMut(Event),
+    told: Option<EventKind>,
+}
+
+impl Teller<'_> {
+    fn tell(&mut self, kind: EventKind, contact: Option<Contact>, place: impl FnOnce() -> Point) {
+        if self.told != Some(kind) || kind == EventKind::CutOff {
+            (self.tell)(Event { kind, origin: *self.origin, place: place(), contact });
+        }
+        self.told = Some(kind);
+    }
+}
+
+/// The shape of the tool in use; a cut with a tool without one is told once in a row.
+fn shape<'a>(
+    tools: &'a BTreeMap<u32, Tool>,
+    number: Option<u32>,
+    unknown: &mut Option<u32>,
+    cut: Option<(&Segment, &mut Teller<'_>)>,
+) -> Option<&'a Tool> {
+    let number = number.unwrap_or(0);
+    let tool = tools.get(&number);
+    if let (None, Some((way, teller))) = (tool, cut)
+        && *unknown != Some(number)
+    {
+        *unknown = Some(number);
+        teller.tell(EventKind::NoShape { tool: number }, None, || way.start);
+    }
+    tool
+}
+
+/// A contact that counts.
+fn deep(contact: Option<Contact>) -> Option<Contact> {
+    contact.filter(|contact| contact.depth_mm > GRAZE_MM)
+}
+
+/// The programmed point when the tool first goes in, on a way on which it does.
+fn first_touch(section: &Section, cutter: &Cutter, way: &Segment) -> Point {
+    // Below a micrometre for any way on a lathe.
+    const HALVINGS: u32 = 24;
+    let mut sweep = Sweep::new();
+    let (mut clear, mut hit) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = (clear + hit) / 2.0;
+        let part = Segment { end: ways::at(way, middle), ..*way };
+        if deep(section.touches(sweep.along(cutter, &part))).is_some() {
+            hit = middle
+        } else {
+            clear = middle
+        }
+    }
+    ways::at(way, clear)
+}
