@@ -265,6 +265,11 @@ impl Bounds {
 }
 
 impl Segment {
+    /// The angle of an arc, negative when clockwise; 0 of a line.
+    pub fn sweep_rad(&self) -> f64 {
+        self.bend.map_or(0.0, |bend| bend.sense() * self.sweep(bend))
+    }
+
     /// The same way back.
     #[must_use]
     pub fn reversed(&self) -> Self {
@@ -297,7 +302,7 @@ impl Segment {
 
     /// The area that the way from start to end passes on its left, down to the spindle axis; against Z it counts
     /// as positive, so that a counter-clockwise loop adds up to what it encloses.
-    fn area_beside_axis_mm2(&self) -> f64 {
+    pub fn area_beside_axis_mm2(&self) -> f64 {
         let below = (self.start.z - self.end.z) * (self.start.x + self.end.x) / 2.0;
         let bulge = self.bend.map_or(0.0, |bend| {
             let (radius, sweep) = (self.radius(), self.sweep(bend));

@@ -18,6 +18,7 @@
 
 mod band;
 mod chain;
+mod contour;
 mod curve;
 mod cutter;
 mod decompose;
@@ -31,6 +32,7 @@ mod slide;
 mod sweep;
 mod swing;
 
+pub use contour::Contour;
 pub use cutter::{Cutter, HOLLOW_MM};
 pub use machining::Machining;
 pub use pieces::Piece;

@@ -129,7 +129,7 @@ impl Section {
     }
 
     /// The pieces, and for each band the number of its piece.
-    fn bonded(&self) -> (Vec<Piece>, Vec<usize>) {
+    pub(crate) fn bonded(&self) -> (Vec<Piece>, Vec<usize>) {
         let mut bonds = Bonds::of(self.row.slabs());
         let mut numbers = vec![usize::MAX; bonds.0.len()];
         let mut pieces: Vec<Piece> = Vec::new();

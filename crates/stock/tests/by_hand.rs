@@ -204,3 +204,28 @@ fn a_hollow_form_tool_cuts_a_bead_within_its_tolerance() {
         removed.area_mm2
     );
 }
+
+#[test]
+fn contours_are_few_and_keep_arcs_whole() {
+    let mut bar = Section::bar(25.0, -60.0, 0.0).expect("a bar");
+    let outline = |bar: &Section| {
+        let contours = bar.contours();
+        contours.iter().map(|contour| contour.segments.len()).collect::<Vec<_>>()
+    };
+    assert_eq!(outline(&bar), [4]);
+    let disc = Outline::circle(point(12., -20.), 4.0).expect("a disc");
+    bar.cut_hole(&disc);
+    // A bar with a cavity all round: two half circles, clockwise.
+    assert_eq!(outline(&bar), [4, 2]);
+    let cavity = &bar.contours()[1];
+    near(cavity.area_mm2(), -16.0 * PI);
+    assert!(cavity.segments.iter().all(|arc| arc.bend.is_some_and(|bend| bend.clockwise)));
+    // A step with a nose: face, cylinder, fillet, shoulder, cylinder, end, axis.
+    let mut step = Section::bar(25.0, -60.0, 0.0).expect("a bar");
+    let mut sweep = Sweep::new();
+    let square = Outline::rectangle(point(0., 0.), point(12., 12.)).expect("a square");
+    step.cut(sweep.line(&Cutter::new(&square), point(20., 2.), point(20., -30.)));
+    assert_eq!(outline(&step), [6]);
+    let first = step.contours()[0].segments[0];
+    assert_eq!((first.start, first.end), (point(0., -60.), point(0., 0.)));
+}

@@ -97,3 +97,36 @@ fn a_way_in_pieces_is_the_whole_way() {
         assert!(difference.abs() < 1e-7, "seed {seed}: {difference}");
     }
 }
+
+#[test]
+fn contours_enclose_what_the_section_covers() {
+    for seed in 1..=1_500 {
+        let mut random = Random::new(seed);
+        let (mut section, cuts) = job(&mut random, 7);
+        let mut sweep = Sweep::new();
+        for (tool, way) in &cuts {
+            cut(&mut section, &mut sweep, tool, way);
+        }
+        let contours = section.contours();
+        let enclosed: f64 = contours.iter().map(|contour| contour.area_mm2()).sum();
+        assert!(
+            (enclosed - section.area_mm2()).abs() < 1e-5,
+            "seed {seed}: {}",
+            enclosed - section.area_mm2()
+        );
+        for contour in &contours {
+            let next = contour.segments.iter().cycle().skip(1);
+            assert!(
+                contour.segments.iter().zip(next).all(|(one, next)| one.end == next.start),
+                "seed {seed}"
+            );
+        }
+        // Every piece has one loop round it; the other loops are cavities.
+        let pieces = section.pieces();
+        let round = contours.iter().filter(|contour| contour.area_mm2() > 1e-5).count();
+        let solid = pieces.iter().filter(|piece| piece.area_mm2 > 1e-5).count();
+        assert_eq!(round, solid, "seed {seed}");
+        let of_pieces: f64 = pieces.iter().map(|piece| piece.area_mm2).sum();
+        assert!((of_pieces - section.area_mm2()).abs() < 1e-9, "seed {seed}");
+    }
+}
