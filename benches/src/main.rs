@@ -4,11 +4,13 @@
 //! ratios (goals: P1 G1 blocks, P3 numbered blocks, P4 arcs, P5 and P6 macro loops, P7 cycles, P8 listing,
 //! S1 memory, S2 growth, S3 jumps). `rs274` is run
 //! as a separate program when it is installed; without it only our own figures are printed.
+//! `removal` takes material away beside a polyline library (R1, R3, R4).
 //! `cycles` runs P7 and a figure of 100 pockets alone; `generate DIR [BLOCKS]`, `lex FILE`, `tree FILE`, `interpret FILE`, `listing FILE` do single steps.
 
 mod compare;
 mod cycles;
 mod generate;
+mod removal;
 
 use std::fs::File;
 use std::os::unix::fs::FileExt;
@@ -37,10 +39,11 @@ fn main() -> ExitCode {
         ["interpret", file] => interpret(Path::new(file)).map(drop),
         ["listing", file] => listing(Path::new(file)),
         ["cycles"] => compare::cycles(3),
+        ["removal"] => removal::run(1_000, 10).and_then(|()| removal::growth(10_000, 10)),
         ["compare"] => compare::run(1_000_000, 5),
         ["compare", blocks] => compare::run(blocks.parse().unwrap_or(1_000_000), 5),
         _ => {
-            Err("usage: compare [BLOCKS] | cycles | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE"
+            Err("usage: compare [BLOCKS] | cycles | removal | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE"
                 .to_string())
         }
     };

@@ -1,7 +1,7 @@
 //! Edges end to end along Z: one side of a stencil.
 
 use crate::WELD_MM;
-use crate::curve::Curve;
+use crate::curve::{Curve, greater, lesser};
 
 /// Edges that follow each other along Z without a gap; they need not meet in X.
 #[derive(Clone, Debug, Default)]
@@ -72,17 +72,34 @@ impl Chain {
         starts.zip(&self.links).map(|(from, link)| (from, link.to, link.edge))
     }
 
+    /// Whether no edge lies lower than this X between two Z.
+    #[inline]
+    pub(crate) fn clears(&self, level: f64, from: f64, to: f64) -> bool {
+        let mut start = self.from;
+        for link in &self.links {
+            let (a, b) = (greater(from, start), lesser(to, link.to));
+            if a < b && !link.edge.clears(level, a, b) {
+                return false;
+            }
+            if link.to >= to {
+                break;
+            }
+            start = link.to;
+        }
+        true
+    }
+
     /// Lowest and highest X between two Z.
     #[inline]
     pub(crate) fn range(&self, from: f64, to: f64) -> (f64, f64) {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut start = self.from;
         for link in &self.links {
-            let (a, b) = (from.max(start), to.min(link.to));
+            let (a, b) = (greater(from, start), lesser(to, link.to));
             if a < b {
                 let (l, h) = link.edge.range(a, b);
-                low = low.min(l);
-                high = high.max(h);
+                low = lesser(low, l);
+                high = greater(high, h);
             }
             if link.to >= to {
                 break;

@@ -31,6 +31,18 @@ pub(crate) enum Curve {
     },
 }
 
+/// The lesser of two numbers; quicker than `f64::min`, which also sorts out what is no number.
+#[inline(always)]
+pub(crate) fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The greater of two numbers.
+#[inline(always)]
+pub(crate) fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
 /// What lies between an edge and the spindle axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Content {
@@ -60,7 +72,7 @@ impl Curve {
             Self::Line { z, x, slope } => x + slope * (at_z - z),
             Self::Arc { z, x, radius } => {
                 let off = at_z - z;
-                x + ((radius - off) * (radius + off)).max(0.0).sqrt().copysign(radius)
+                x + greater((radius - off) * (radius + off), 0.0).sqrt().copysign(radius)
             }
         }
     }
@@ -74,7 +86,7 @@ impl Curve {
     #[inline]
     pub(crate) fn lean(&self, at_z: f64) -> f64 {
         match *self {
-            Self::Line { slope, .. } => slope / slope.hypot(1.0),
+            Self::Line { slope, .. } => slope / (1.0 + slope * slope).sqrt(),
             Self::Arc { z, radius, .. } => ((z - at_z) / radius).clamp(-1.0, 1.0),
         }
     }
@@ -109,10 +121,25 @@ impl Curve {
     #[inline]
     pub(crate) fn range(&self, from: f64, to: f64) -> (f64, f64) {
         let (a, b) = (self.at(from), self.at(to));
-        let (low, high) = (a.min(b), a.max(b));
+        let (low, high) = (lesser(a, b), greater(a, b));
         match *self {
-            Self::Arc { z, x, radius } if from < z && z < to => (low.min(x + radius), high.max(x + radius)),
+            Self::Arc { z, x, radius } if from < z && z < to => {
+                (lesser(low, x + radius), greater(high, x + radius))
+            }
             _ => (low, high),
+        }
+    }
+
+    /// Whether the edge lies no lower than this X between two Z; a bulging arc is tried without a root.
+    #[inline]
+    pub(crate) fn clears(&self, level: f64, from: f64, to: f64) -> bool {
+        match *self {
+            Self::Arc { z, x, radius } if radius < 0.0 => {
+                let off = if to < z { z - to } else { greater(from - z, 0.0) };
+                let above = x - level;
+                above >= 0.0 && above * above + off * off >= radius * radius
+            }
+            _ => self.at(from) >= level && self.at(to) >= level,
         }
     }
 
@@ -130,7 +157,7 @@ impl Curve {
             }
             (line @ Self::Line { slope, .. }, Self::Arc { z, x, radius })
             | (Self::Arc { z, x, radius }, line @ Self::Line { slope, .. }) => {
-                let stretch = slope.hypot(1.0);
+                let stretch = (1.0 + slope * slope).sqrt();
                 let off = (line.at(z) - x) / stretch;
                 let half = half_chord(radius.abs(), off.abs());
                 let foot = -slope / stretch * off;
@@ -138,7 +165,7 @@ impl Curve {
             }
             (Self::Arc { z, x, radius }, Self::Arc { z: z2, x: x2, radius: radius2 }) => {
                 let (dz, dx) = (z2 - z, x2 - x);
-                let apart = dz.hypot(dx);
+                let apart = (dz * dz + dx * dx).sqrt();
                 let foot = (apart + (radius - radius2) * (radius + radius2) / apart) / 2.0;
                 let half = half_chord(radius.abs(), foot.abs());
                 let (along, across) = (dz / apart * foot, dx / apart * half);
@@ -147,27 +174,21 @@ impl Curve {
         }
     }
 
-    /// How far this edge lies above another, at one of two places between two Z: where they do not cross there, it is
-    /// above zero when it lies above. The other number is where.
+    /// Whether two edges may cross between two Z, by a look that costs less than to find where.
     #[inline]
-    pub(crate) fn height_over(&self, other: &Self, from: f64, to: f64) -> (f64, f64) {
-        // Two edges that touch in between do so once: one of two places tells.
-        let (one, two) = (from + (to - from) * 0.25, from + (to - from) * 0.75);
-        let (a, b) = (self.at(one) - other.at(one), self.at(two) - other.at(two));
-        if a.abs() > b.abs() { (a, one) } else { (b, two) }
-    }
-
-    /// Whether this edge lies above another by more than the weld, measured square to the flatter one, between two Z
-    /// where they do not cross.
-    #[inline]
-    pub(crate) fn rises_over(&self, other: &Self, from: f64, to: f64) -> bool {
-        let (height, z) = self.height_over(other, from, to);
-        // No edge is so steep that a millimetre above another is within the weld.
-        if height <= WELD_MM || height > 1.0 {
-            return height > WELD_MM;
+    pub(crate) fn may_meet(&self, other: &Self, from: f64, to: f64) -> bool {
+        match (self, other) {
+            (Self::Line { .. }, Self::Line { .. }) => {
+                (self.at(from) - other.at(from)) * (self.at(to) - other.at(to)) <= 0.0
+            }
+            (line @ Self::Line { .. }, Self::Arc { x, radius, .. })
+            | (Self::Arc { x, radius, .. }, line @ Self::Line { .. }) => {
+                let (low, high) = line.range(from, to);
+                let (bottom, top) = if *radius > 0.0 { (*x, x + radius) } else { (x + radius, *x) };
+                low <= top && high >= bottom
+            }
+            (Self::Arc { .. }, Self::Arc { .. }) => self != other,
         }
-        let level = self.levelness(z).max(other.levelness(z));
-        height * height * level > WELD_MM * WELD_MM
     }
 
     /// The squared cosine of the angle at which the edge climbs.
@@ -221,6 +242,53 @@ impl Curve {
     }
 }
 
+/// A stretch of Z in which edges do not cross: how two of them lie to each other is seen at two places of it. Edges that
+/// touch in between do so once, so that one of the two places tells.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Column {
+    one: f64,
+    other: f64,
+}
+
+impl Column {
+    #[inline]
+    pub(crate) fn new(from: f64, to: f64) -> Self {
+        Self { one: from + (to - from) * 0.25, other: from + (to - from) * 0.75 }
+    }
+
+    /// An edge at both places.
+    #[inline]
+    pub(crate) fn across<'a>(&self, edge: &'a Curve) -> Across<'a> {
+        Across { edge, x: [edge.at(self.one), edge.at(self.other)] }
+    }
+
+    /// How far one edge lies above another, and at which Z: above zero when it lies above.
+    #[inline]
+    pub(crate) fn height(&self, upper: &Across<'_>, lower: &Across<'_>) -> (f64, f64) {
+        let (one, other) = (upper.x[0] - lower.x[0], upper.x[1] - lower.x[1]);
+        if one.abs() > other.abs() { (one, self.one) } else { (other, self.other) }
+    }
+
+    /// Whether an edge lies above another by more than the weld, measured square to the flatter of them.
+    #[inline]
+    pub(crate) fn rises(&self, upper: &Across<'_>, lower: &Across<'_>) -> bool {
+        let (height, z) = self.height(upper, lower);
+        // No edge is so steep that a millimetre above another is within the weld.
+        if height <= WELD_MM || height > 1.0 {
+            return height > WELD_MM;
+        }
+        let level = greater(upper.edge.levelness(z), lower.edge.levelness(z));
+        height * height * level > WELD_MM * WELD_MM
+    }
+}
+
+/// An edge with its X at the two places of a column.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Across<'a> {
+    pub(crate) edge: &'a Curve,
+    x: [f64; 2],
+}
+
 impl std::ops::Sub for Content {
     type Output = Self;
 
@@ -239,20 +307,31 @@ impl std::ops::AddAssign for Content {
 /// Half the chord of a circle at a distance from its centre: nothing when just touched, no number when missed.
 #[inline]
 fn half_chord(radius: f64, off: f64) -> f64 {
-    if off > radius + WELD_MM { f64::NAN } else { ((radius - off) * (radius + off)).max(0.0).sqrt() }
+    if off > radius + WELD_MM { f64::NAN } else { greater((radius - off) * (radius + off), 0.0).sqrt() }
 }
 
 /// Between a chord and its arc of no more than half a circle; the ends are given from the centre, as (z, x).
 #[inline]
 fn segment_area(radius: f64, chord_squared: f64, from: (f64, f64), to: (f64, f64)) -> f64 {
-    // Half of r² times angle less sine. For small angles their difference is a series in the squared sine of half
-    // the angle, s: 4/3 s³ + 2/5 s⁵ + 3/14 s⁷ + ...
+    // Half of r² times angle less sine, which for a small angle is a series in the squared sine of half of it.
+    const SERIES: [f64; 12] = [
+        4.0 / 3.0,
+        2.0 / 5.0,
+        3.0 / 14.0,
+        5.0 / 36.0,
+        35.0 / 352.0,
+        63.0 / 832.0,
+        77.0 / 1280.0,
+        429.0 / 8704.0,
+        6435.0 / 155_648.0,
+        12_155.0 / 344_064.0,
+        46_189.0 / 1_507_328.0,
+        88_179.0 / 3_276_800.0,
+    ];
     let sine_squared = chord_squared / (4.0 * radius * radius);
-    if sine_squared < 0.01 {
-        let s = sine_squared;
-        let series = 4.0 / 3.0
-            + s * (2.0 / 5.0 + s * (3.0 / 14.0 + s * (5.0 / 36.0 + s * (35.0 / 352.0 + s * (63.0 / 832.0)))));
-        return radius * radius / 2.0 * series * s * s.sqrt();
+    if sine_squared < 0.1 {
+        let series = SERIES.iter().rev().fold(0.0, |sum, factor| sum * sine_squared + factor);
+        return radius * radius / 2.0 * series * sine_squared * sine_squared.sqrt();
     }
     let cross = from.0 * to.1 - from.1 * to.0;
     let angle = libm::atan2(cross.abs(), from.0 * to.0 + from.1 * to.1);
@@ -329,15 +408,19 @@ mod tests {
 
     #[test]
     fn heights_of_steep_edges_are_measured_square() {
+        let rises = |upper: &Curve, lower: &Curve, from: f64, to: f64| {
+            let column = Column::new(from, to);
+            column.rises(&column.across(upper), &column.across(lower))
+        };
         let steep = Curve::through(Point::new(0.0, 0.0), Point::new(10.0, 1e-6));
         let beside = steep.moved(Vector { x: 0.0, z: 1e-12 });
-        assert!(steep.height_over(&beside, 0.0, 1e-6).0 > 1e-6);
-        assert!(!steep.rises_over(&beside, 0.0, 1e-6) && !beside.rises_over(&steep, 0.0, 1e-6));
+        assert!(steep.at(1e-7) - beside.at(1e-7) > 1e-6);
+        assert!(!rises(&steep, &beside, 0.0, 1e-6) && !rises(&beside, &steep, 0.0, 1e-6));
         let thick = steep.moved(Vector { x: 0.0, z: -2e-9 });
-        assert!(thick.rises_over(&steep, 0.0, 1e-6));
-        assert!(Curve::level(2.0).rises_over(&Curve::level(0.5), 0.0, 1.0));
+        assert!(rises(&thick, &steep, 0.0, 1e-6));
+        assert!(rises(&Curve::level(2.0), &Curve::level(0.5), 0.0, 1.0));
         // Touching half-way, yet far above at the ends.
-        assert!(Curve::level(5.0).rises_over(&arc(0.0, 0.0, 5.0), -4.0, 4.0));
+        assert!(rises(&Curve::level(5.0), &arc(0.0, 0.0, 5.0), -4.0, 4.0));
     }
 
     #[test]

@@ -32,6 +32,10 @@ pub(crate) struct Convex {
     pub(crate) from: f64,
     pub(crate) lower: Vec<Facet>,
     pub(crate) upper: Vec<Facet>,
+    /// Lowest X of the lower edges.
+    pub(crate) lower_least: f64,
+    /// Lowest X of the upper edges.
+    pub(crate) upper_least: f64,
 }
 
 /// An edge of a convex shape.
@@ -70,7 +74,8 @@ impl Cutter {
 
 impl Convex {
     fn new(band: &Band, from: f64, to: f64) -> Self {
-        let mut part = Self { from, lower: Vec::new(), upper: Vec::new() };
+        let (lower_least, upper_least) = (f64::INFINITY, f64::INFINITY);
+        let mut part = Self { from, lower: Vec::new(), upper: Vec::new(), lower_least, upper_least };
         part.push(band, from, to);
         part
     }
@@ -99,6 +104,8 @@ impl Convex {
     }
 
     fn push(&mut self, band: &Band, from: f64, to: f64) {
+        self.lower_least = self.lower_least.min(band.floor.range(from, to).0);
+        self.upper_least = self.upper_least.min(band.roof.range(from, to).0);
         for (facets, edge) in [(&mut self.lower, band.floor), (&mut self.upper, band.roof)] {
             let last = edge.lean(to);
             match facets.last_mut() {

@@ -5,34 +5,35 @@
 //! and upper edge of the stencil. Edges that are one but for the rounding of numbers ([`crate::WELD_MM`]) are taken as
 //! one here, and only here; whatever is decided, what is left is a stack of bands again.
 
-use turnwright_geometry::Point;
-
 use crate::WELD_MM;
 use crate::band::Band;
-use crate::curve::Curve;
+use crate::curve::{Column, Curve, greater, lesser};
 use crate::removed::Removed;
 use crate::row::{Run, Slab};
 use crate::sweep::Stencil;
 
 /// A stencil in use.
 pub(crate) struct Knife<'a> {
-    pub(crate) stencil: &'a Stencil,
+    stencil: &'a Stencil,
     pub(crate) from: f64,
     pub(crate) to: f64,
     pub(crate) removed: Removed,
-    pub(crate) stops: &'a mut Stops,
+    stops: &'a mut Stops,
 }
 
 /// Memory for the places where a slab is parted.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stops {
-    coarse: Vec<f64>,
-    fine: Vec<f64>,
+    coarse: Places,
+    fine: Places,
 }
 
-/// Nothing is below, nothing is above.
-const BELOW_ALL: Curve = Curve::level(f64::NEG_INFINITY);
-const ABOVE_ALL: Curve = Curve::level(f64::INFINITY);
+/// The sides of a stencil that lie within some material; a side that does not passes all of it by.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    lower: bool,
+    upper: bool,
+}
 
 impl<'a> Knife<'a> {
     pub(crate) fn new(stencil: &'a Stencil, stops: &'a mut Stops) -> Self {
@@ -40,110 +41,143 @@ impl<'a> Knife<'a> {
         Self { stencil, from, to, removed: Removed::default(), stops }
     }
 
-    /// The material of a band between two Z, less all between two edges that cross none of its own there.
-    fn carve_band(
-        &mut self,
-        band: &Band,
-        (lower, upper): (Curve, Curve),
-        from: f64,
-        to: f64,
-        left: &mut Run,
-    ) {
-        let rises = |a: &Curve, b: &Curve| a.rises_over(b, from, to);
-        if !rises(&band.roof, &lower) || !rises(&upper, &band.floor) {
-            left.push_band(*band);
-            return;
-        }
-        let (mut bottom, mut top) = (band.floor, band.roof);
-        if rises(&lower, &band.floor) {
-            left.push_band(Band { floor: band.floor, roof: lower });
-            bottom = lower;
-        }
-        let is_open = !rises(&band.roof, &upper);
-        if !is_open {
-            left.push_band(Band { floor: upper, roof: band.roof });
-            top = upper;
-        }
-        let is_whole = is_open && bottom == band.floor;
-        let is_split = !is_open && bottom != band.floor;
-        self.removed.add(&Band { floor: bottom, roof: top }, from, to, is_whole || is_split);
-    }
-
-    /// Whether the rectangle between two Z and two X is out of reach.
+    /// How the stencil lies to the rectangle between two Z and two X; `None` when it misses it.
     #[inline]
-    pub(crate) fn misses(&self, from: f64, to: f64, low: f64, high: f64) -> bool {
-        let (from, to) = (from.max(self.from), to.min(self.to));
-        to - from <= WELD_MM
-            || self.stencil.lower.range(from, to).0 >= high
-            || self.stencil.upper.range(from, to).1 <= low
+    pub(crate) fn reach(&self, from: f64, to: f64, low: f64, high: f64) -> Option<Reach> {
+        let (from, to) = (greater(from, self.from), lesser(to, self.to));
+        if to - from <= WELD_MM {
+            return None;
+        }
+        let Stencil { lower, upper, lower_least, upper_least } = self.stencil;
+        if lower.clears(high, from, to) {
+            return None;
+        }
+        let has_lower = *lower_least > low || lower.range(from, to).1 > low;
+        if *upper_least >= high {
+            return Some(Reach { lower: has_lower, upper: false });
+        }
+        let upper = upper.range(from, to);
+        (upper.1 > low).then_some(Reach { lower: has_lower, upper: upper.0 < high })
     }
 
     /// Writes what is left of a slab; false when that is all of it.
-    pub(crate) fn carve(&mut self, slab: &Slab, bands: &[Band], left: &mut Run) -> bool {
-        let (from, to) = (slab.from.max(self.from), slab.to.min(self.to));
-        // A side that passes all of the material by need not be looked at.
-        let has_lower = self.stencil.lower.range(from, to).1 > slab.low;
-        let has_upper = self.stencil.upper.range(from, to).0 < slab.high;
-        let mut stops = std::mem::take(self.stops);
-        let Stops { coarse, fine } = &mut stops;
-        coarse.clear();
-        coarse.extend([from, to]);
-        if has_lower {
-            coarse.extend(self.stencil.lower.links.iter().map(|link| link.to));
+    pub(crate) fn carve(&mut self, slab: &Slab, bands: &[Band], reach: Reach, left: &mut Run) -> bool {
+        let Self { stencil, stops: Stops { coarse, fine }, removed, .. } = self;
+        coarse.restart(slab.from, slab.to);
+        coarse.add(self.from);
+        coarse.add(self.to);
+        if reach.lower {
+            stencil.lower.links.iter().for_each(|link| coarse.add(link.to));
         }
-        if has_upper {
-            coarse.extend(self.stencil.upper.links.iter().map(|link| link.to));
+        if reach.upper {
+            stencil.upper.links.iter().for_each(|link| coarse.add(link.to));
         }
-        part(coarse, slab.from, slab.to);
-        let before = self.removed.count;
-        let mut start = slab.from;
-        for &stop in coarse.iter() {
-            let middle = (start + stop) / 2.0;
-            let is_within = self.from < middle && middle < self.to;
-            let lower = if has_lower { self.stencil.lower.edge(middle) } else { BELOW_ALL };
-            let upper = if has_upper { self.stencil.upper.edge(middle) } else { ABOVE_ALL };
-            fine.clear();
-            if is_within {
-                let edges = bands.iter().flat_map(|band| [&band.floor, &band.roof]);
-                fine.extend(
-                    edges.flat_map(|edge| edge.crossings(&lower).into_iter().chain(edge.crossings(&upper))),
-                );
-            }
-            part(fine, start, stop);
-            for &to in fine.iter() {
+        let before = removed.count;
+        let mut from = slab.from;
+        for &to in coarse.ends() {
+            let middle = (from + to) / 2.0;
+            if middle < self.from || middle > self.to {
+                bands.iter().for_each(|band| left.push_band(*band));
+                left.end_slab(from, to);
+            } else {
+                let lower = reach.lower.then(|| stencil.lower.edge(middle));
+                let upper = reach.upper.then(|| stencil.upper.edge(middle));
+                fine.restart(from, to);
                 for band in bands {
-                    if is_within {
-                        self.carve_band(band, (lower, upper), start, to, left);
-                    } else {
-                        left.push_band(*band);
-                    }
+                    fine.add_crossings(lower.as_ref(), band);
+                    fine.add_crossings(upper.as_ref(), band);
                 }
-                left.end_slab(start, to);
-                start = to;
+                carve_between(bands, lower.as_ref(), upper.as_ref(), fine, removed, left);
             }
+            from = to;
         }
-        *self.stops = stops;
-        self.removed.count > before
+        removed.count > before
     }
 }
 
-/// Keeps the places between two Z, in order, none nearer to another than the weld; the last is the end.
-fn part(stops: &mut Vec<f64>, from: f64, to: f64) {
-    stops.retain(|stop| from + WELD_MM < *stop && *stop < to - WELD_MM);
-    stops.sort_unstable_by(f64::total_cmp);
-    stops.dedup_by(|next, before| *next - *before <= WELD_MM);
-    stops.push(to);
+/// Writes what is left where the edges of the stencil do not change; they cross others at the given places.
+fn carve_between(
+    bands: &[Band],
+    lower: Option<&Curve>,
+    upper: Option<&Curve>,
+    crossings: &Places,
+    removed: &mut Removed,
+    left: &mut Run,
+) {
+    let mut from = crossings.from;
+    for &to in crossings.ends() {
+        let column = Column::new(from, to);
+        let lower = lower.map(|edge| column.across(edge));
+        let upper = upper.map(|edge| column.across(edge));
+        for band in bands {
+            let (floor, roof) = (column.across(&band.floor), column.across(&band.roof));
+            let is_below = lower.is_some_and(|lower| !column.rises(&roof, &lower));
+            let is_above = upper.is_some_and(|upper| !column.rises(&upper, &floor));
+            if is_below || is_above {
+                left.push_band(*band);
+                continue;
+            }
+            let mut taken = *band;
+            let bottom = lower.filter(|lower| column.rises(lower, &floor));
+            if let Some(edge) = bottom {
+                left.push_band(Band { floor: band.floor, roof: *edge.edge });
+                taken.floor = *edge.edge;
+            }
+            let top = upper.filter(|upper| column.rises(&roof, upper));
+            if let Some(edge) = top {
+                left.push_band(Band { floor: *edge.edge, roof: band.roof });
+                taken.roof = *edge.edge;
+            }
+            // Taking all of a band, or out of its middle, may part what it joined.
+            removed.add(&taken, from, to, bottom.is_some() == top.is_some());
+        }
+        left.end_slab(from, to);
+        from = to;
+    }
 }
 
-impl Removed {
-    fn add(&mut self, band: &Band, from: f64, to: f64, may_part: bool) {
-        let content = band.content(from, to);
-        let (low, high) = band.range(from, to);
-        self.count += 1;
-        self.area_mm2 += content.area_mm2;
-        self.volume_mm3 += content.volume_mm3;
-        self.may_part |= may_part;
-        self.include(Point::new(low, from));
-        self.include(Point::new(high, to));
+/// Places between two Z, in order, none nearer to another or to an end than the weld, and the further end.
+#[derive(Clone, Debug, Default)]
+struct Places {
+    from: f64,
+    to: f64,
+    ends: Vec<f64>,
+}
+
+impl Places {
+    fn restart(&mut self, from: f64, to: f64) {
+        (self.from, self.to) = (from, to);
+        self.ends.clear();
+        self.ends.push(to);
+    }
+
+    /// Adds a place where there is room for it; what is no number is no place.
+    #[inline]
+    fn add(&mut self, z: f64) {
+        if !(z - self.from > WELD_MM && self.to - z > WELD_MM) {
+            return;
+        }
+        let behind = self.ends.iter().position(|place| z < place + WELD_MM).unwrap_or(0);
+        // The one behind is no nearer in front of it than the weld, or it is taken for it.
+        if self.ends[behind] - z > WELD_MM {
+            self.ends.insert(behind, z);
+        }
+    }
+
+    #[inline]
+    fn add_crossings(&mut self, edge: Option<&Curve>, band: &Band) {
+        let Some(edge) = edge else { return };
+        for other in [&band.floor, &band.roof] {
+            if edge.may_meet(other, self.from, self.to) {
+                let [one, two] = edge.crossings(other);
+                self.add(one);
+                self.add(two);
+            }
+        }
+    }
+
+    /// Where the parts between the places end, one after the other.
+    fn ends(&self) -> &[f64] {
+        &self.ends
     }
 }

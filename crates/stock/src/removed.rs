@@ -2,6 +2,8 @@
 
 use turnwright_geometry::{Bounds, Point};
 
+use crate::band::Band;
+
 /// What a sweep took out of a section; the rectangle round it is the depth of cut in both directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Removed {
@@ -36,7 +38,18 @@ impl Removed {
         self.count > 0
     }
 
-    pub(crate) fn include(&mut self, place: Point) {
+    pub(crate) fn add(&mut self, band: &Band, from: f64, to: f64, may_part: bool) {
+        let content = band.content(from, to);
+        let (low, high) = band.range(from, to);
+        self.count += 1;
+        self.area_mm2 += content.area_mm2;
+        self.volume_mm3 += content.volume_mm3;
+        self.may_part |= may_part;
+        self.include(Point::new(low, from));
+        self.include(Point::new(high, to));
+    }
+
+    fn include(&mut self, place: Point) {
         let none = Bounds { min: place, max: place };
         self.bounds = Some(self.bounds.map_or(none, |bounds| bounds.with(place)));
     }

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use crate::WELD_MM;
 use crate::band::Band;
+use crate::curve::{greater, lesser};
 use crate::knife::Knife;
 use crate::removed::Removed;
 
@@ -81,33 +82,40 @@ impl Run {
         self.bands.push(band);
     }
 
-    /// Closes a slab with the bands pushed since the last; without any there is no slab. A slab that goes on as the
-    /// one before is put to it.
+    /// Closes a slab with the bands pushed since the last; without any there is no slab.
     #[inline]
     pub(crate) fn end_slab(&mut self, from: f64, to: f64) {
-        let first = self.first_band(self.len());
-        let bands = &self.bands[first..];
+        let bands = &self.bands[self.first_band(self.len())..];
         let (Some(lowest), Some(highest)) = (bands.first(), bands.last()) else { return };
         let (low, high) = (lowest.floor.range(from, to).0, highest.roof.range(from, to).1);
-        let before = if self.slabs.is_empty() { 0 } else { self.first_band(self.len() - 1) };
-        if let Some(last) = self.slabs.last_mut()
-            && last.to == from
-            && self.bands[before..first].len() == bands.len()
-            && self.bands[before..first].iter().zip(bands).all(|(a, b)| a.is_one_with(b, from, to))
-        {
-            last.to = to;
-            last.low = last.low.min(low);
-            last.high = last.high.max(high);
-            self.bands.truncate(first);
-            return;
-        }
-        self.slabs.push(Slab { from, to, low, high, end: self.bands.len() as u32 });
+        self.push_slab(Slab { from, to, low, high, end: 0 });
     }
 
     /// Adds a slab as it is.
     fn copy(&mut self, slab: &Slab, bands: &[Band]) {
         self.bands.extend_from_slice(bands);
-        self.end_slab(slab.from, slab.to);
+        self.push_slab(*slab);
+    }
+
+    /// A slab that goes on as the one before is put to it.
+    #[inline]
+    fn push_slab(&mut self, slab: Slab) {
+        let first = self.first_band(self.len());
+        let before = if self.slabs.is_empty() { 0 } else { self.first_band(self.len() - 1) };
+        let (before, bands) = (&self.bands[before..first], &self.bands[first..]);
+        let is_same = |(a, b): (&Band, &Band)| a.is_one_with(b, slab.from, slab.to);
+        if let Some(last) = self.slabs.last_mut()
+            && last.to == slab.from
+            && before.len() == bands.len()
+            && before.iter().zip(bands).all(is_same)
+        {
+            last.to = slab.to;
+            last.low = lesser(last.low, slab.low);
+            last.high = greater(last.high, slab.high);
+            self.bands.truncate(first);
+        } else {
+            self.slabs.push(Slab { end: self.bands.len() as u32, ..slab });
+        }
     }
 
     fn truncate(&mut self, slabs: usize) {
@@ -120,8 +128,8 @@ impl Run {
         let bands = self.first_band(slabs.start)..self.first_band(slabs.end);
         let (start, behind) = (bands.start, slabs.start + with.len());
         let grown = with.bands.len() as i64 - bands.len() as i64;
-        self.bands.splice(bands, with.bands.iter().copied());
-        self.slabs.splice(slabs.clone(), with.slabs.iter().copied());
+        put(&mut self.bands, bands, &with.bands);
+        put(&mut self.slabs, slabs.clone(), &with.slabs);
         self.slabs[slabs.start..behind].iter_mut().for_each(|slab| slab.end += start as u32);
         self.slabs[behind..].iter_mut().for_each(|slab| slab.end = (i64::from(slab.end) + grown) as u32);
     }
@@ -135,6 +143,19 @@ impl Run {
         other.slabs.extend(moved.map(|slab| Slab { end: slab.end - first as u32 + shift, ..*slab }));
         self.truncate(from);
     }
+}
+
+/// Puts items in the place of others; quicker than `Vec::splice` for a few that are copied.
+fn put<T: Copy>(list: &mut Vec<T>, range: Range<usize>, items: &[T]) {
+    let (tail, length) = (list.len() - range.end, list.len() - range.len() + items.len());
+    if let Some(&filler) = items.first()
+        && length > list.len()
+    {
+        list.resize(length, filler);
+    }
+    list.copy_within(range.end..range.end + tail, range.start + items.len());
+    list.truncate(length);
+    list[range.start..range.start + items.len()].copy_from_slice(items);
 }
 
 impl Chunk {
@@ -158,16 +179,14 @@ impl Chunk {
             if slab.from >= to - WELD_MM {
                 break;
             }
-            if knife.misses(slab.from, slab.to, slab.low, slab.high) {
-                continue;
-            }
+            let Some(reach) = knife.reach(slab.from, slab.to, slab.low, slab.high) else { continue };
             let before = index.saturating_sub(1);
             let written = written.get_or_insert(before..before);
             (written.end..index)
                 .map(|index| run.slab(index))
                 .for_each(|(slab, bands)| left.copy(slab, bands));
             written.end = index + 1;
-            is_changed |= knife.carve(slab, bands, left);
+            is_changed |= knife.carve(slab, bands, reach, left);
         }
         let Some(mut written) = written.filter(|_| is_changed) else { return false };
         if written.end < run.len() {
@@ -184,8 +203,8 @@ impl Chunk {
         let slabs = &self.run.slabs;
         let (Some(first), Some(last)) = (slabs.first(), slabs.last()) else { return };
         (self.from, self.to) = (first.from, last.to);
-        self.low = slabs.iter().fold(f64::INFINITY, |low, slab| low.min(slab.low));
-        self.high = slabs.iter().fold(f64::NEG_INFINITY, |high, slab| high.max(slab.high));
+        self.low = slabs.iter().fold(f64::INFINITY, |low, slab| lesser(low, slab.low));
+        self.high = slabs.iter().fold(f64::NEG_INFINITY, |high, slab| greater(high, slab.high));
     }
 }
 
@@ -232,13 +251,13 @@ impl Row {
         let first = self.chunks.partition_point(|chunk| chunk.to <= from + WELD_MM);
         let reached = self.chunks[first..].iter().take_while(|chunk| chunk.from < to - WELD_MM);
         for chunk in reached {
-            if knife.misses(chunk.from, chunk.to, chunk.low, chunk.high) {
+            if knife.reach(chunk.from, chunk.to, chunk.low, chunk.high).is_none() {
                 continue;
             }
             for (slab, bands) in chunk.run.slabs() {
-                if !knife.misses(slab.from, slab.to, slab.low, slab.high) {
+                if let Some(reach) = knife.reach(slab.from, slab.to, slab.low, slab.high) {
                     left.clear();
-                    knife.carve(slab, bands, left);
+                    knife.carve(slab, bands, reach, left);
                 }
             }
         }
@@ -251,7 +270,8 @@ impl Row {
         let mut index = self.chunks.partition_point(|chunk| chunk.to <= from + WELD_MM);
         let mut emptied: Option<usize> = None;
         while let Some(chunk) = self.chunks.get_mut(index).filter(|chunk| chunk.from < to - WELD_MM) {
-            if !knife.misses(chunk.from, chunk.to, chunk.low, chunk.high) && chunk.carve(knife, left) {
+            if knife.reach(chunk.from, chunk.to, chunk.low, chunk.high).is_some() && chunk.carve(knife, left)
+            {
                 if chunk.run.len() == 0 {
                     emptied.get_or_insert(index);
                 } else if chunk.run.len() > CHUNK_SLABS_MAX {

@@ -73,7 +73,7 @@ impl Section {
         let mut removed = Removed::default();
         for stencil in sweep.stencils() {
             removed = removed.and(self.cut_stencil(stencil));
-            if reaches_below(stencil) {
+            if stencil.lower_least < -WELD_MM {
                 let mut mirrored = std::mem::take(&mut self.mirrored);
                 stencil.mirror_into(&mut mirrored);
                 removed = removed.and(self.cut_stencil(&mirrored));
@@ -81,6 +81,12 @@ impl Section {
             }
         }
         removed
+    }
+
+    /// Takes a hole of this outline out of the section.
+    pub fn cut_hole(&mut self, outline: &Outline) -> Removed {
+        let mut sweep = Sweep::new();
+        self.cut(sweep.rest(&Cutter::new(outline), Point::default()))
     }
 
     fn cut_stencil(&mut self, stencil: &Stencil) -> Removed {
@@ -98,7 +104,7 @@ impl Section {
         let mut removed = Removed::default();
         for stencil in sweep.stencils() {
             removed = removed.and(self.row.probe(&mut Knife::new(stencil, &mut stops), &mut left));
-            if reaches_below(stencil) {
+            if stencil.lower_least < -WELD_MM {
                 stencil.mirror_into(&mut mirrored);
                 removed = removed.and(self.row.probe(&mut Knife::new(&mirrored, &mut stops), &mut left));
             }
@@ -163,18 +169,5 @@ impl Section {
     /// How many slabs hold it: what memory it needs.
     pub fn slab_count(&self) -> usize {
         self.row.len()
-    }
-}
-
-fn reaches_below(stencil: &Stencil) -> bool {
-    stencil.lower.range(stencil.lower.from, stencil.lower.to()).0 < -WELD_MM
-}
-
-/// A cutter of a hole is a tool at rest.
-impl Section {
-    /// Takes a hole of this outline out of the section.
-    pub fn cut_hole(&mut self, outline: &Outline) -> Removed {
-        let mut sweep = Sweep::new();
-        self.cut(sweep.rest(&Cutter::new(outline), Point::default()))
     }
 }

@@ -25,7 +25,7 @@ pub(crate) fn slide(chain: &mut Chain, part: &Convex, side: Side, left: Point, r
             .for_each(|facet| chain.push(facet.to + start.z, facet.edge.moved(Vector { z: start.z, ..way })));
         return;
     }
-    let lean = dx / dz.hypot(dx);
+    let lean = dx / (dz * dz + dx * dx).sqrt();
     let turn = side.turn();
     let line = |chain: &mut Chain, from: Point| {
         let (from, to) = (start.from(from), end.from(from));

@@ -28,6 +28,10 @@ pub struct Sweep {
 pub(crate) struct Stencil {
     pub(crate) lower: Chain,
     pub(crate) upper: Chain,
+    /// The lowest X of the lower chain.
+    pub(crate) lower_least: f64,
+    /// The lowest X of the upper chain, or less.
+    pub(crate) upper_least: f64,
 }
 
 impl Sweep {
@@ -49,7 +53,8 @@ impl Sweep {
         }
         let (left, right) = if from.z <= to.z { (from, to) } else { (to, from) };
         for part in &cutter.parts {
-            self.add(|stencil, _| stencil.slide(part, left, right));
+            let stencil = self.add();
+            stencil.slide(part, left, right);
         }
         self
     }
@@ -70,7 +75,9 @@ impl Sweep {
         let bend = Bend { centre: evened(from, to, bend.centre), ..bend };
         half_circles(from, to, bend, |start, end, path| {
             for part in &cutter.parts {
-                self.add(|stencil, swing| stencil.swing(part, &path, start.min(end), start.max(end), swing));
+                let (mut swing, stencil) = (std::mem::take(&mut self.swing), self.add());
+                stencil.swing(part, &path, start.min(end), start.max(end), &mut swing);
+                self.swing = swing;
             }
         });
         self
@@ -84,12 +91,13 @@ impl Sweep {
         }
     }
 
-    fn add(&mut self, write: impl FnOnce(&mut Stencil, &mut Swing)) {
+    /// The next stencil, with what an earlier sweep left in it.
+    fn add(&mut self) -> &mut Stencil {
         if self.used == self.stencils.len() {
             self.stencils.push(Stencil::default());
         }
-        write(&mut self.stencils[self.used], &mut self.swing);
         self.used += 1;
+        &mut self.stencils[self.used - 1]
     }
 
     pub(crate) fn stencils(&self) -> &[Stencil] {
@@ -114,18 +122,28 @@ impl Stencil {
         for (side, chain) in [(Side::Lower, &mut self.lower), (Side::Upper, &mut self.upper)] {
             slide(chain, part, side, left, right);
         }
+        self.place(part, if left.x < right.x { left.x } else { right.x });
     }
 
     fn swing(&mut self, part: &Convex, path: &Curve, from: f64, to: f64, swing: &mut Swing) {
         for (side, chain) in [(Side::Lower, &mut self.lower), (Side::Upper, &mut self.upper)] {
             swing.write(chain, part, side, path, from, to);
         }
+        self.place(part, path.range(from, to).0);
     }
 
     /// The same on the other side of the axis.
     pub(crate) fn mirror_into(&self, other: &mut Self) {
         self.lower.mirror_into(&mut other.upper);
         self.upper.mirror_into(&mut other.lower);
+        let least = |chain: &Chain| chain.range(chain.from, chain.to()).0;
+        (other.lower_least, other.upper_least) = (least(&other.lower), least(&other.upper));
+    }
+
+    /// A part whose way has its lowest X here.
+    fn place(&mut self, part: &Convex, x: f64) {
+        self.lower_least = x + part.lower_least;
+        self.upper_least = x + part.upper_least;
     }
 }
 

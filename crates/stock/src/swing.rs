@@ -14,7 +14,7 @@ use turnwright_geometry::Vector;
 
 use crate::WELD_MM;
 use crate::chain::{Chain, Side};
-use crate::curve::Curve;
+use crate::curve::{Column, Curve};
 use crate::cutter::Convex;
 
 /// Memory for making a chain.
@@ -117,7 +117,9 @@ impl Outermost<'_> {
             stops.sort_by(f64::total_cmp);
             let mut low = a;
             for stop in stops.into_iter().filter(|stop| a < *stop && *stop < b).chain([b]) {
-                let is_beyond = edge.height_over(&old, low, stop).0 * self.side.turn() < 0.0;
+                let column = Column::new(low, stop);
+                let (height, _) = column.height(&column.across(&edge), &column.across(&old));
+                let is_beyond = height * self.side.turn() < 0.0;
                 chain.go_on(stop, if is_beyond { edge } else { old });
                 low = stop;
             }
