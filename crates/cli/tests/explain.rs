@@ -49,6 +49,20 @@ fn an_unknown_parameter_is_an_error_with_a_suggestion() {
 }
 
 #[test]
+fn parameters_of_axes_that_the_machine_lacks_are_refused() {
+    let folder = Folder::new();
+    let program = folder.file("part.nc", support::CLEAN);
+    let ran = turnwright(&["check", &program, "--control", "fanuc-0i-tf", "--param", "1221.C=90"]);
+    assert!(ran.status == 2 && ran.err.contains("1221.C") && ran.err.contains("no axis C"), "{}", ran.err);
+    folder.file("part.toml", "machine = \"turn-mill\"\n[work]\nG55 = { c = 12.5 }\n");
+    let ran = turnwright(&["check", &program, "--control", "fanuc-0i-tf", "--param", "1221.C=90"]);
+    assert_eq!(ran.status, 0, "{}", ran.err);
+    let setup = folder.file("plain.toml", "[work]\nG55 = { c = 12.5 }\n");
+    let ran = turnwright(&["check", &program, "--setup", &setup]);
+    assert!(ran.status == 2 && ran.err.contains("no axis C"), "{}", ran.err);
+}
+
+#[test]
 fn a_program_of_the_card_calls_no_other_one_from_there() {
     let folder = Folder::new();
     let program = folder.file("O0001.nc", "O0001\nM198 P2\nM30\n");

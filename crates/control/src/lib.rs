@@ -33,7 +33,7 @@ pub use parameter_text::{
 pub use parameters::{Acts, Axis, Parameter, ParameterFault, Parameters, UnderNumber};
 pub use setup::{
     AxisPair, LinearAxis, Machine, MachineAxes, Mode, Offset, OffsetRow, RotaryAxis, Setup, SetupFault,
-    machine_names,
+    ZeroRow, machine_names,
 };
 pub use setup_text::setup_key_words;
 pub use signal::Signal;

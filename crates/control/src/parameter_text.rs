@@ -3,7 +3,7 @@
 //! In: such a text, or the parameters of a setup. Out: the parameters of a setup, or such a text.
 //!
 //! N is the number, Q1 says that it is a parameter. Each value stands behind P; before it may stand the axis (A1 is
-//! X, A2 is Z), the path (L1) or the spindle (S1) that it belongs to. Bits are eight digits, bit 7 first. A length
+//! X, A2 is Z, the others as the machine file numbers them), the path (L1) or the spindle (S1) that it belongs to. Bits are eight digits, bit 7 first. A length
 //! without a point counts least increments.
 //!
 //! Invariants: nothing is lost: a number that is not known here, and what is known only in part (the other bits of
@@ -15,7 +15,7 @@
 use std::collections::BTreeMap;
 
 use crate::policy::ParameterText;
-use crate::{Axis, Control, Parameter, Parameters, Setup, UnderNumber};
+use crate::{Axis, Control, MachineAxes, Parameter, Parameters, Setup, UnderNumber};
 
 /// A line of a parameter text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -102,10 +102,9 @@ fn split_digits(text: &str) -> (&str, &str) {
     text.split_at(text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len()))
 }
 
-/// The axis that `A1` or `A2` means.
-fn axis_of(place: &str) -> Option<Axis> {
-    let number: usize = place.strip_prefix('A')?.parse().ok()?;
-    Axis::ALL.get(number.checked_sub(1)?).copied()
+/// The axis that `A1` means on a machine.
+fn axis_of(place: &str, machine: &MachineAxes) -> Option<Axis> {
+    machine.numbered(place.strip_prefix('A')?.parse().ok()?)
 }
 
 /// The eight digits of a word of bits, bit 7 first.
@@ -128,11 +127,12 @@ fn increment_mm(parameters: &Parameters) -> f64 {
 pub fn import_parameters(control: &Control, setup: &mut Setup, lines: &[ParameterLine]) -> ParameterImport {
     let mut import = ParameterImport::default();
     let mut probe = control.parameters.clone();
+    let machine = setup.machine().map(|machine| machine.axes).unwrap_or_default();
     // Bits first: they say what a least increment is.
     for line in lines {
         if let Some(under) = probe.under_number(line.number).filter(|under| under.whole.is_none()) {
             for (position, value) in line.values.iter().enumerate() {
-                take_value(&mut probe, setup, (line.number, &under), value, position);
+                take_value(&mut probe, setup, (line.number, &under), (position, value), &machine);
             }
         }
     }
@@ -144,7 +144,7 @@ pub fn import_parameters(control: &Control, setup: &mut Setup, lines: &[Paramete
         };
         let mut is_whole = under.bits.is_empty();
         for (position, value) in line.values.iter().enumerate() {
-            match take_value(&mut probe, setup, (line.number, &under), value, position) {
+            match take_value(&mut probe, setup, (line.number, &under), (position, value), &machine) {
                 Taken::Set(count) => import.known += count,
                 Taken::Elsewhere => is_whole = false,
                 Taken::Refused(expected) => {
@@ -174,10 +174,10 @@ fn take_value(
     probe: &mut Parameters,
     setup: &mut Setup,
     (number, under): (u32, &UnderNumber),
-    entry: &Entry,
-    position: usize,
+    (position, entry): (usize, &Entry),
+    machine: &MachineAxes,
 ) -> Taken {
-    let axis = axis_of(&entry.place);
+    let axis = axis_of(&entry.place, machine);
     let increment_mm = increment_mm(probe);
     let mut set = |address: String, value: &str| -> Result<(), &'static str> {
         probe.set(&address, value).map_err(|fault| fault.expected())?;
@@ -248,6 +248,7 @@ pub fn export_parameters(control: &Control, setup: &Setup) -> ParameterExport {
             lines.insert(line.number, line);
         }
     }
+    let machine = setup.machine().map(|machine| machine.axes).unwrap_or_default();
     let mut export = ParameterExport::default();
     for (address, value) in setup.parameter_words() {
         let (number, axis) = address.split_once('.').unwrap_or((&address, ""));
@@ -255,7 +256,9 @@ pub fn export_parameters(control: &Control, setup: &Setup) -> ParameterExport {
         let Ok(word) = word.parse::<u32>() else { continue };
         let axis = Axis::ALL.into_iter().find(|one| axis.eq_ignore_ascii_case(one.letter()));
         let place = match (axis, form) {
-            (Some(axis), _) => format!("A{}", axis as usize + 1),
+            // An axis that the machine does not have has no number to write.
+            (Some(axis), _) if machine.number(axis).is_none() => continue,
+            (Some(axis), _) => format!("A{}", machine.number(axis).unwrap_or_default()),
             (None, ParameterText::Long) => "L1".to_string(),
             (None, ParameterText::Short) => String::new(),
         };

@@ -14,17 +14,32 @@ pub enum Axis {
     X,
     /// Along the spindle axis.
     Z,
+    /// About the spindle axis; its values are degrees.
+    C,
+    /// Across X and Z.
+    Y,
+    /// About Y; its values are degrees.
+    B,
 }
 
 impl Axis {
-    /// All axes, in the order of their numbers.
-    pub const ALL: [Self; 2] = [Self::X, Self::Z];
+    /// All axes.
+    pub const ALL: [Self; 5] = [Self::X, Self::Z, Self::C, Self::Y, Self::B];
+
+    /// The axes that every lathe has.
+    pub const TURNING: [Self; 2] = [Self::X, Self::Z];
+
+    /// Those that only the machine file gives.
+    pub const OTHERS: [Self; 3] = [Self::C, Self::Y, Self::B];
 
     /// Its letter.
     pub const fn letter(self) -> &'static str {
         match self {
             Self::X => "X",
             Self::Z => "Z",
+            Self::C => "C",
+            Self::Y => "Y",
+            Self::B => "B",
         }
     }
 }
@@ -157,6 +172,8 @@ pub struct Parameters {
     values: BTreeMap<String, [f64; Axis::ALL.len()]>,
     /// Names of those that were set, to whatever value.
     stated: BTreeSet<String>,
+    /// Of those with a value for each axis, the axes beyond X and Z that were set.
+    stated_others: BTreeSet<(String, Axis)>,
 }
 
 /// The table; read when it is first asked for.
@@ -182,7 +199,7 @@ impl Parameters {
                 _ => return Err(format!("parameter {name} is unknown or has no number")),
             }
         }
-        Ok(Self { map: map.to_string(), values, stated: BTreeSet::new() })
+        Ok(Self { map: map.to_string(), values, stated: BTreeSet::new(), stated_others: BTreeSet::new() })
     }
 
     /// The value of a parameter by name; bits are 0 and 1.
@@ -206,6 +223,12 @@ impl Parameters {
         self.stated.contains(name)
     }
 
+    /// The number by which a parameter was set for an axis, if one was: `1221.C`.
+    pub fn stated_for(&self, axis: Axis) -> Option<String> {
+        let (name, _) = self.stated_others.iter().find(|(_, stated)| *stated == axis)?;
+        Some(format!("{}.{}", self.number(name)?, axis.letter()))
+    }
+
     /// Sets a parameter by the number that the control gives it: `3401#0`, `5130`, `051`. Behind the number of a
     /// parameter that each axis has its own of stands the axis: `1221.X`, `1310#0.Z`.
     ///
@@ -214,8 +237,9 @@ impl Parameters {
     pub fn set(&mut self, number: &str, value: &str) -> Result<(), ParameterFault> {
         let number = number.trim();
         let Some((name, parameter, axis)) = self.look_up(number) else {
-            let known = table().values().filter(|one| one.numbers.contains_key(&self.map));
-            let numbers: Vec<String> = known.flat_map(|one| self.addresses(one)).map(|(n, _)| n).collect();
+            let known = table().iter().filter(|(_, one)| one.numbers.contains_key(&self.map));
+            let numbers: Vec<String> =
+                known.flat_map(|(name, one)| self.addresses(name, one)).map(|(n, _)| n).collect();
             let nearest = nearest(number, numbers.iter().map(String::as_str)).map(str::to_string);
             return Err(ParameterFault::Unknown { number: number.to_string(), nearest });
         };
@@ -247,6 +271,9 @@ impl Parameters {
             _ => return Err(fault("a number in range")),
         };
         self.stated.insert(name.clone());
+        if let Some(axis) = axis.filter(|axis| Axis::OTHERS.contains(axis)) {
+            self.stated_others.insert((name.clone(), axis));
+        }
         if let Some(values) = self.values.get_mut(name) {
             match axis {
                 Some(axis) => values[axis as usize] = parsed,
@@ -295,13 +322,18 @@ impl Parameters {
     }
 
     /// The numbers by which a parameter of this control is set, and the place of each value.
-    fn addresses(&self, parameter: &Parameter) -> Vec<(String, Axis)> {
+    fn addresses(&self, name: &str, parameter: &Parameter) -> Vec<(String, Axis)> {
         let Some(number) = parameter.numbers.get(&self.map).map(|number| number.trim_start_matches('!'))
         else {
             return Vec::new();
         };
         if parameter.per_axis {
-            Axis::ALL.into_iter().map(|axis| (format!("{number}.{}", axis.letter()), axis)).collect()
+            // Of axes that few machines have, what somebody set.
+            let is_set = |axis| {
+                Axis::TURNING.contains(&axis) || self.stated_others.contains(&(name.to_string(), axis))
+            };
+            let axes = Axis::ALL.into_iter().filter(|axis| is_set(*axis));
+            axes.map(|axis| (format!("{number}.{}", axis.letter()), axis)).collect()
         } else {
             vec![(number.to_string(), Axis::ALL[0])]
         }
@@ -341,7 +373,7 @@ impl Parameters {
         let mut all: Vec<_> = table()
             .iter()
             .flat_map(|(name, parameter)| {
-                self.addresses(parameter).into_iter().map(|(number, axis)| {
+                self.addresses(name, parameter).into_iter().map(|(number, axis)| {
                     let value = self.shown_value(name, parameter, axis);
                     (number, name.clone(), parameter.clone(), value)
                 })
@@ -397,6 +429,13 @@ mod tests {
         assert_eq!(parameters.axis_value("work-zero-1", Axis::X), 0.0);
         let fault = parameters.set("1221", "1").expect_err("no axis");
         assert_eq!(fault, ParameterFault::Axis { number: "1221".to_string(), example: "1221.X".to_string() });
+        parameters.set("1221.C", "90").expect("known");
+        assert_eq!(parameters.axis_value("work-zero-1", Axis::C), 90.0);
+        assert_eq!(parameters.stated_for(Axis::C).as_deref(), Some("1221.C"));
+        assert_eq!(parameters.stated_for(Axis::Y), None);
+        let shown =
+            parameters.all().into_iter().map(|(number, ..)| number).filter(|n| n.starts_with("1221."));
+        assert_eq!(shown.collect::<Vec<_>>(), ["1221.C", "1221.X", "1221.Z"]);
         assert!(matches!(parameters.set("1221.Q", "1"), Err(ParameterFault::Unknown { .. })));
         assert!(matches!(parameters.set("3410.X", "1"), Err(ParameterFault::Unknown { .. })));
     }

@@ -20,6 +20,43 @@ pub struct AxisPair {
     pub z: f64,
 }
 
+/// A stored zero: millimetres, X as a diameter, C and B in degrees.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[expect(missing_docs, reason = "the axes")]
+pub struct ZeroRow {
+    pub x: f64,
+    pub z: f64,
+    pub c: f64,
+    pub y: f64,
+    pub b: f64,
+}
+
+impl ZeroRow {
+    /// The value of an axis.
+    pub const fn value(&self, axis: Axis) -> f64 {
+        match axis {
+            Axis::X => self.x,
+            Axis::Z => self.z,
+            Axis::C => self.c,
+            Axis::Y => self.y,
+            Axis::B => self.b,
+        }
+    }
+
+    /// A row of the values that axes have.
+    pub fn of(value: impl Fn(Axis) -> f64) -> Self {
+        let [x, z, c, y, b] = Axis::ALL.map(value);
+        Self { x, z, c, y, b }
+    }
+
+    /// The axes to show: X, Z and those of the others that are not zero.
+    pub fn shown(&self) -> impl Iterator<Item = (Axis, f64)> + '_ {
+        let all = Axis::ALL.into_iter().map(|axis| (axis, self.value(axis)));
+        all.filter(|(axis, value)| Axis::TURNING.contains(axis) || *value != 0.0)
+    }
+}
+
 /// A machine: rates, times, and where its reference point lies. Units are the last part of each name.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -100,6 +137,23 @@ fn full_turn() -> f64 {
 }
 
 impl MachineAxes {
+    /// The axis with a number, from 1: X and Z are the first two, the others say it themselves.
+    pub fn numbered(&self, number: usize) -> Option<Axis> {
+        Axis::ALL.into_iter().find(|axis| self.number(*axis) == Some(number))
+    }
+
+    /// The number of an axis, if the machine has it.
+    pub fn number(&self, axis: Axis) -> Option<usize> {
+        let rotary = |axis: &Option<RotaryAxis>| axis.as_ref().map(|axis| usize::from(axis.number));
+        match axis {
+            Axis::X => Some(1),
+            Axis::Z => Some(2),
+            Axis::C => rotary(&self.c),
+            Axis::Y => self.y.as_ref().map(|axis| usize::from(axis.number)),
+            Axis::B => rotary(&self.b),
+        }
+    }
+
     /// What no axis can have.
     fn fault(&self) -> Option<String> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
@@ -213,11 +267,11 @@ pub struct Setup {
     /// Signals that end skip and measuring moves; the first that fits a move counts.
     #[serde(default)]
     pub skip: Vec<Signal>,
-    /// Stored zeros, mm, X as a diameter: `G54` to `G59`, `"G54.1 P1"` and so on, the external offset `EXT` and
+    /// Stored zeros, mm, X as a diameter, C and B in degrees: `G54` to `G59`, `"G54.1 P1"` and so on, the external offset `EXT` and
     /// the workpiece shift `SHIFT`. They are what the control stores, counted from the machine's `reference`: with
     /// that at X0 Z0 they are true machine coordinates.
     #[serde(default)]
-    pub work: BTreeMap<String, AxisPair>,
+    pub work: BTreeMap<String, ZeroRow>,
     /// What is in the chuck before the first cut.
     #[serde(default)]
     pub stock: Option<Stock>,
@@ -322,10 +376,20 @@ impl Machine {
             self.cutting_max_mm_per_min = feed;
         }
         // Along a path the faster axis counts: a feed above its limit is surely held down.
-        let fastest = |name| Axis::ALL.into_iter().filter_map(|axis| of_axis(name, axis)).reduce(f64::max);
+        let fastest =
+            |name| Axis::TURNING.into_iter().filter_map(|axis| of_axis(name, axis)).reduce(f64::max);
         if let Some(feed) = fastest("cutting-feed-maximum-axis") {
             let of_all = set("cutting-feed-maximum").unwrap_or(f64::INFINITY);
             self.cutting_max_mm_per_min = feed.min(of_all);
+        }
+        for (axis, rotary) in [(Axis::C, &mut self.axes.c), (Axis::B, &mut self.axes.b)] {
+            let Some(rotary) = rotary else { continue };
+            rotary.rapid_deg_per_min = of_axis("rapid-rate", axis).unwrap_or(rotary.rapid_deg_per_min);
+            rotary.cutting_max_deg_per_min =
+                of_axis("cutting-feed-maximum-axis", axis).unwrap_or(rotary.cutting_max_deg_per_min);
+        }
+        if let (Some(rate), Some(axis)) = (of_axis("rapid-rate", Axis::Y), &mut self.axes.y) {
+            axis.rapid_mm_per_min = rate;
         }
         if let (Some(turn), Some(axis)) = (set("rotary-turn"), &mut self.axes.c) {
             axis.turn_deg = turn;
@@ -584,6 +648,18 @@ mod tests {
         let axes = setup.expect("setup").machine().expect("machine").axes;
         assert_eq!(axes.c.map(|axis| (axis.number, axis.rapid_deg_per_min)), Some((4, 9000.0)));
         assert_eq!((axes.b, axes.y.map(|axis| axis.number)), (None, Some(3)));
+        let setup = Setup::parse("machine = \"turn-mill\"").expect("setup");
+        let machine = setup.machine().expect("machine");
+        assert_eq!(machine.axes.numbered(3), Some(Axis::Y));
+        assert_eq!((machine.axes.number(Axis::C), machine.axes.numbered(9)), (Some(4), None));
+        let mut parameters = crate::Control::load(crate::DEFAULT_CONTROL).expect("control").parameters;
+        for (number, value) in [("1420.C", "720"), ("1420.Y", "500"), ("1430.B", "90")] {
+            parameters.set(number, value).expect(number);
+        }
+        let axes = machine.limited_by(&parameters).axes;
+        assert_eq!(axes.c.map(|axis| axis.rapid_deg_per_min), Some(720.0));
+        assert_eq!(axes.y.map(|axis| axis.rapid_mm_per_min), Some(500.0));
+        assert_eq!(axes.b.map(|axis| axis.cutting_max_deg_per_min), Some(90.0));
         let setup = Setup::parse("[axes.y]\nnumber = 3\nrapid_mm_per_min = 0.0\n").expect("setup");
         assert!(setup.machine().is_err());
         for name in machine_names() {

@@ -210,7 +210,10 @@ impl Setup {
         let kept = self.kept.iter().map(|(key, value)| (key.clone(), quoted(value)));
         writer.section("kept", &kept.collect::<Vec<_>>());
         let work = self.work.iter();
-        let work = work.map(|(name, pair)| (name.clone(), format!("{{ x = {}, z = {} }}", pair.x, pair.z)));
+        let work = work.map(|(name, row)| {
+            let axes = row.shown().map(|(axis, value)| format!("{} = {value}", axis.letter().to_lowercase()));
+            (name.clone(), format!("{{ {} }}", axes.collect::<Vec<_>>().join(", ")))
+        });
         writer.section("work", &work.collect::<Vec<_>>());
         if let Some(stock) = &self.stock {
             writer.part("stock", stock_lines(stock));

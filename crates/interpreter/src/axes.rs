@@ -49,8 +49,10 @@ pub(crate) struct Axes {
     pub(crate) plane: Plane,
     /// Where they stand, in the coordinates of the program.
     pub(crate) at: Places,
-    /// Program zero in machine coordinates: what coordinate settings have added up to.
+    /// Program zero in machine coordinates: all zeros and shifts in force.
     pub(crate) preset: Places,
+    /// Where they stood before the last move that took them along.
+    pub(crate) came_from: Places,
     pub(crate) interpolation: Interpolation,
     /// Movement of the tool offset in Y that is still to be made.
     pub(crate) untaken_y: Length,
@@ -105,6 +107,7 @@ impl Axes {
             plane: Plane::default(),
             at,
             preset: Places::default(),
+            came_from: Places::default(),
             interpolation: Interpolation::Normal,
             untaken_y: Length::ZERO,
             v: Length::ZERO,
@@ -133,20 +136,9 @@ impl Axes {
         };
     }
 
-    /// A reference point, 0 to 3, in the coordinates of the program: the first is the machine's, the others are
-    /// machine zero, as the parameters of X and Z have them too until somebody sets them.
-    fn reference(&self, number: usize) -> Places {
-        let there = match number {
-            0 => Self::new(self.machine.clone(), false, true).at,
-            _ => Places::default(),
-        };
-        Places { c: there.c - self.preset.c, y: there.y - self.preset.y, b: there.b - self.preset.b }
-    }
-
     /// Where they stand in machine coordinates.
     pub(crate) fn in_machine(&self) -> Places {
-        let (at, zero) = (self.at, self.preset);
-        Places { c: at.c + zero.c, y: at.y + zero.y, b: at.b + zero.b }
+        self.at.plus(self.preset)
     }
 
     /// An M code was given out: it may make the spindle an axis, or a spindle again.
@@ -418,6 +410,7 @@ impl Core {
     ) -> Option<Box<OtherAxes>> {
         let is_inch = self.modal.is_inch;
         let axes = &mut self.axes;
+        axes.came_from = axes.at;
         if axes.is_virtual() {
             let v = ends.v.unwrap_or(axes.v);
             let (_, angle) = axes.interpolation.axes_at(to, v, shape, axes.at.c);
@@ -473,9 +466,14 @@ impl Core {
         Ok(ends)
     }
 
+    /// A reference point, 0 to 3, in the coordinates of the program.
+    fn reference_of_others(&self, number: usize) -> Places {
+        self.zeros.others.reference[number].minus(self.axes.preset)
+    }
+
     /// A reference point, 0 to 3, of those axes beyond X and Z that go somewhere.
     pub(crate) fn other_reference(&self, number: usize, ends: &OtherAxes) -> OtherAxes {
-        let places = self.axes.reference(number);
+        let places = self.reference_of_others(number);
         OtherAxes {
             c: ends.c.map(|_| places.c),
             y: ends.y.map(|_| places.y),
@@ -487,7 +485,7 @@ impl Core {
     /// The first word of a block whose axis does not stand at its first reference point. A rotary axis stands there
     /// again after every full turn.
     pub(crate) fn other_axis_not_at_home<'b>(&self, block: &'b Block) -> Option<&'b Word> {
-        let (home, at, machine) = (self.axes.reference(0), self.axes.at, &self.axes.machine);
+        let (home, at, machine) = (self.reference_of_others(0), self.axes.at, &self.axes.machine);
         let turns = |from: Angle, to: Angle, turn_deg: f64| {
             let turn = ((turn_deg * 1e9).round() as i64).max(1);
             (to - from).nanodegrees() % turn == 0
@@ -500,19 +498,26 @@ impl Core {
         })
     }
 
-    /// The offset of the tool in Y, as a shift or as a movement, has changed by this much.
-    pub(crate) fn offset_y(&mut self, shift: Length, movement: Length) {
-        let way = shift + movement;
-        if self.axes.machine.y.is_none() || (way.is_zero() && movement.is_zero()) {
+    /// The zeros have moved this way, and the offset of the tool in Y has changed, as a shift or as a movement. The
+    /// axes stay where they are and have new coordinates.
+    pub(crate) fn move_other_zeros(&mut self, mut way: Places, shift_y: Length, movement_y: Length) {
+        if self.axes.machine.y.is_some() {
+            way.y += shift_y + movement_y;
+            self.axes.untaken_y += movement_y;
+        }
+        if way == Places::default() {
             return;
         }
-        self.axes.preset.y += way;
-        self.axes.at.y = self.axes.at.y - way;
-        self.axes.untaken_y += movement;
-        if !way.is_zero() {
-            let others = OtherAxes { y: Some(self.axes.at.y), ..OtherAxes::default() };
-            self.emit(Action::Relocate { to: self.tip, others: Some(Box::new(others)) });
-        }
+        let axes = &mut self.axes;
+        (axes.preset, axes.at) = (axes.preset.plus(way), axes.at.minus(way));
+        let at = axes.at;
+        let others = OtherAxes {
+            c: (way.c != Angle::ZERO).then_some(at.c),
+            y: (!way.y.is_zero()).then_some(at.y),
+            b: (way.b != Angle::ZERO).then_some(at.b),
+            ..OtherAxes::default()
+        };
+        self.emit(Action::Relocate { to: self.tip, others: Some(Box::new(others)) });
     }
 
     /// The movement of the offset in Y that is still to be made, as the axes of a move.
@@ -535,14 +540,12 @@ impl Core {
         let here = self.axes.at;
         let there =
             Places { c: ends.c.unwrap_or(here.c), y: ends.y.unwrap_or(here.y), b: ends.b.unwrap_or(here.b) };
-        let preset = &mut self.axes.preset;
-        preset.c = preset.c + here.c - there.c;
-        preset.y = preset.y + here.y - there.y;
-        preset.b = preset.b + here.b - there.b;
-        let to = self.modal.position;
-        if let Some(others) = self.take_along(to, &Shape::Line, ends) {
-            self.emit(Action::Relocate { to: self.tip, others: Some(others) });
-        }
+        let named = self.others_named(block);
+        self.with_new_zero(|core| {
+            let zeros = &mut core.zeros.others;
+            let local = zeros.local.clear(named);
+            zeros.preset = zeros.preset.plus(local).plus(here).minus(there);
+        });
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! The lists that data setting opens and G11 closes: parameters and tool life.
 //!
-//! Parameters: `N_ R_`, for one axis `N_ P_ R_` (1 is X, 2 is Z), for one bit `N_ Q_ R_` where the control has it.
+//! Parameters: `N_ R_`, for one axis `N_ P_ R_` (1 is X, 2 is Z, the others as the machine file numbers
+//! them), for one bit `N_ Q_ R_` where the control has it.
 //! R is whole and counts the parameter's own unit, least increments for lengths; a word of bits is written as
 //! eight digits or as its number. The parameter acts from the next block on. Controls that read parameters too
 //! write with W, and R names the variable that takes the value.
@@ -21,6 +22,7 @@ use crate::functions::Dispatch;
 use crate::machine::Core;
 use crate::modal::Settings;
 use crate::report::Alarm;
+use crate::strokes::Strokes;
 
 /// A list in work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,8 +116,8 @@ impl Core {
         let number = self.whole(name, 99_999)?;
         let axis = match block.word(b'P') {
             Some(word) => {
-                let axis = (self.whole(word, 99)? as usize).checked_sub(1).and_then(|at| Axis::ALL.get(at));
-                Some(*axis.ok_or_else(|| self.alarm("parameter-input-format", word))?)
+                let axis = self.axes.machine.numbered(self.whole(word, 99)? as usize);
+                Some(axis.ok_or_else(|| self.alarm("parameter-input-format", word))?)
             }
             None => None,
         };
@@ -218,6 +220,13 @@ impl Core {
         self.settings = Settings::new(parameters, policies, always, limits.number_digits);
         self.dispatch = Dispatch::new(&self.control);
         self.with_new_zero(|core| core.zeros.follow_parameter(&core.control, key, axis));
+        // The area that the program gave with the switch stays until its own parameters are written.
+        let second = self.strokes.second;
+        self.strokes = Strokes::new(&self.control.parameters, &self.axes.machine);
+        if !matches!(key, "stroke-two-plus" | "stroke-two-minus") {
+            self.strokes.second = second;
+        }
+        self.look_at_moves();
     }
 
     /// A word of bits: eight digits of 0 and 1, else its number.

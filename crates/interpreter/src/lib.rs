@@ -36,6 +36,7 @@ mod macros;
 mod modal;
 mod moves;
 mod offsets;
+mod other_zeros;
 mod parts;
 mod plain;
 mod plane;

@@ -255,7 +255,7 @@ impl Interpreter {
         let macros = Macros::new(&control);
         let machine = setup.machine()?.limited_by(&control.parameters);
         let machine_limits = MachineLimits::new(&machine);
-        let strokes = Strokes::new(&control.parameters);
+        let strokes = Strokes::new(&control.parameters, &machine.axes);
         let zeros = Zeros::new(&control, setup, &machine)?;
         let mut axes =
             Axes::new(machine.axes, machine.live_tool_rpm_max.is_some(), dispatch.has_incremental_words);

@@ -337,7 +337,8 @@ impl Settings {
                 .reduce(f64::min),
             cutting_feed_is_barred: parameters.is_stated("cutting-feed-maximum")
                 && parameters.value("cutting-feed-maximum") == 0.0
-                && Axis::ALL.map(|axis| parameters.axis_value("cutting-feed-maximum-axis", axis)) == [0.0; 2],
+                && Axis::TURNING.map(|axis| parameters.axis_value("cutting-feed-maximum-axis", axis))
+                    == [0.0; 2],
             thread_speed_check_off: bit("thread-speed-check-off"),
             thread_pull_out_feed: Some(mm("thread-pull-out-feed")).filter(|feed| feed.signum() > 0),
             run_out_tenths: count("thread-run-out"),

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use turnwright_canon::Action;
 use turnwright_control::policy::DataSetting;
 use turnwright_control::{
-    AxisPair, Control, Offset, OffsetRow, ParameterImport, ParameterLine, Setup, SetupFault,
+    Axis, Control, Offset, OffsetRow, ParameterImport, ParameterLine, Setup, SetupFault, ZeroRow,
     import_parameters,
 };
 use turnwright_diagnostics::{Diagnostic, SourceId};
@@ -166,7 +166,17 @@ pub fn export_work_zeros(control: &Control, setup: &Setup) -> Result<String, Dat
         let pair = interpreter.core.zeros.pair(zero);
         let increment = interpreter.core.modal.increment(&interpreter.core.settings);
         let (x, z) = (interpreter.written(pair[0], increment), interpreter.written(pair[1], increment));
-        text.push_str(&format!("{head} X{x} Z{z}\n"));
+        text.push_str(&format!("{head} X{x} Z{z}"));
+        let core = &interpreter.core;
+        for axis in Axis::OTHERS.into_iter().filter(|axis| core.axes.machine.number(*axis).is_some()) {
+            let value = core.zeros.get(zero, axis).unwrap_or(Length::ZERO);
+            let value = match axis {
+                Axis::Y => interpreter.written(value, increment),
+                _ => written_in(value, core.settings.metric_increment, 1_000_000),
+            };
+            text.push_str(&format!(" {}{value}", axis.letter()));
+        }
+        text.push('\n');
     };
     line("G10 P0", WorkZero::WorkpieceShift);
     line("G10 L2 P0", WorkZero::External);
@@ -191,21 +201,7 @@ fn open(control: &Control, setup: &Setup) -> Result<Interpreter, DataFault> {
 impl Interpreter {
     /// A length as a word has it, in the unit of power-on.
     fn written(&self, length: Length, increment: LeastIncrement) -> String {
-        let increment = increment.nm();
-        let unit = if self.core.modal.is_inch { 25_400_000 } else { 1_000_000 };
-        let decimals = (unit / increment).ilog10() as u8;
-        let mut digits = Vec::new();
-        if self.core.modal.is_inch || length.nm() % increment == 0 {
-            write_fixed(&mut digits, (length.nm() + increment / 2 * length.signum()) / increment, decimals);
-        } else {
-            // Finer than the control is; nothing is hidden.
-            write_fixed(&mut digits, length.nm(), 6);
-        }
-        let mut text = String::from_utf8(digits).unwrap_or_default();
-        if !text.contains('.') {
-            text.push('.');
-        }
-        text
+        written_in(length, increment, if self.core.modal.is_inch { 25_400_000 } else { 1_000_000 })
     }
 
     /// Writes what is stored into a setup: work zeros that it states as parameters are stated so again.
@@ -226,17 +222,38 @@ impl Interpreter {
         let systems = STANDARD_SYSTEMS + core.zeros.additional_systems();
         let zeros = [WorkZero::WorkpieceShift, WorkZero::External].into_iter();
         for zero in zeros.chain((0..systems).map(WorkZero::System)) {
-            let [x, z] = core.zeros.pair(zero).map(Length::to_mm);
+            let value = |axis| core.zeros.get(zero, axis).unwrap_or(Length::ZERO).to_mm();
+            let has = |axis: &Axis| core.axes.machine.number(*axis).is_some();
+            let row = ZeroRow::of(value);
             let number = zero.parameter().and_then(|name| core.control.parameters.number(name));
             let stated = number.filter(|number| setup.parameters.contains_key(number));
             if let Some(number) = stated {
-                setup.set_parameter(&format!("{number}.X"), x);
-                setup.set_parameter(&format!("{number}.Z"), z);
-            } else if (x, z) != (0.0, 0.0) || setup.work.contains_key(&zero.name()) {
-                setup.work.insert(zero.name(), AxisPair { x, z });
+                for axis in Axis::ALL.into_iter().filter(has) {
+                    setup.set_parameter(&format!("{number}.{}", axis.letter()), value(axis));
+                }
+            } else if row != ZeroRow::default() || setup.work.contains_key(&zero.name()) {
+                setup.work.insert(zero.name(), row);
             }
         }
     }
+}
+
+/// A length as a word has it: `unit` is one of its units, nm.
+fn written_in(length: Length, increment: LeastIncrement, unit: i64) -> String {
+    let increment = increment.nm();
+    let decimals = (unit / increment).ilog10() as u8;
+    let mut digits = Vec::new();
+    if unit != 1_000_000 || length.nm() % increment == 0 {
+        write_fixed(&mut digits, (length.nm() + increment / 2 * length.signum()) / increment, decimals);
+    } else {
+        // Finer than the control is; nothing is hidden.
+        write_fixed(&mut digits, length.nm(), 6);
+    }
+    let mut text = String::from_utf8(digits).unwrap_or_default();
+    if !text.contains('.') {
+        text.push('.');
+    }
+    text
 }
 
 #[cfg(test)]
@@ -245,6 +262,22 @@ mod tests {
 
     fn control() -> Control {
         Control::load(turnwright_control::DEFAULT_CONTROL).expect("the usual control")
+    }
+
+    #[test]
+    fn zeros_of_other_axes_are_read_and_written_again() {
+        let mut setup = Setup::parse("machine = \"turn-mill\"\n").expect("a setup");
+        let text = "G10 L2 P2 X0. Z-5. C12.5 Y-0.25 B30.\nN01221 Q1 A1P0. A2P0. A4P90.\n";
+        import_data(&control(), &mut setup, text.as_bytes()).expect("data");
+        let row = setup.work["G55"];
+        assert_eq!((row.z, row.c, row.y, row.b), (-5.0, 12.5, -0.25, 30.0));
+        let c = setup.parameter_words().into_iter().find(|(number, _)| number == "1221.C");
+        assert_eq!(c.map(|(_, value)| value).as_deref(), Some("90"));
+        let again = export_work_zeros(&control(), &setup).expect("zeros");
+        assert!(again.contains("G10 L2 P2 X0. Z-5. C12.5 Y-0.25 B30.\n"), "{again}");
+        let mut parsed = Setup::parse(&setup.to_toml()).expect("its own text");
+        parsed.kept.clone_from(&setup.kept);
+        assert_eq!(parsed, setup);
     }
 
     #[test]

@@ -5,21 +5,25 @@
 //! their whole way, rapid moves on the bent way of axes that each go at their own rate, arcs by their true extent.
 //! The alarm comes in place of the move that would break the rule.
 //!
+//! Axes beyond X and Z have limits of their own. In the areas of checks 2 and 3 they count as inside when they come
+//! inside at any time of the move.
+//!
 //! An area none of whose limits was ever set (all at ±99999) forbids nothing. A path that dips into an area by
 //! less than [`TOUCH_MM`] only touches it.
 //!
-//! Deliberately not here: the second set of limits that a signal of the machine selects (1326, 1327), the release
+//! Deliberately not here: how far an arc across the turning plane bulges in Y between its ends, the second set of limits that a signal of the machine selects (1326, 1327), the release
 //! signal of check 3, and how far the machine runs on before it stands.
 //!
 //! Source: stored stroke checks 1 to 3, both families.
 
 use turnwright_canon::{Action, RapidPath, Shape, Turn};
-use turnwright_control::{Axis, Parameters};
+use turnwright_control::{Axis, MachineAxes, Parameters};
 use turnwright_diagnostics::{Diagnostic, Place};
 use turnwright_geometry::{Point, sweep_rad};
 use turnwright_syntax::{Block, scan_block};
 use turnwright_units::{Diameter, Length, MachineTurret, Position, Radius, WorkTip};
 
+use crate::axes::Places;
 use crate::machine::Core;
 use crate::report::Alarm;
 
@@ -29,19 +33,38 @@ const TOUCH_MM: f64 = 1e-6;
 /// Limits at and beyond this are none, mm.
 const NO_LIMIT_MM: f64 = 99_999.0;
 
-/// Limits of two axes: the smallest and the largest machine coordinates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Limits of the axes: the smallest and the largest machine coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Area {
     pub(crate) minus: Position<MachineTurret>,
     pub(crate) plus: Position<MachineTurret>,
+    /// Of the axes beyond X and Z.
+    pub(crate) others_minus: Places,
+    pub(crate) others_plus: Places,
 }
 
 impl Area {
     /// The area that two parameters with a value for each axis give.
-    fn new(parameters: &Parameters, plus: &str, minus: &str) -> Self {
+    fn new(parameters: &Parameters, machine: &MachineAxes, plus: &str, minus: &str) -> Self {
         let mm = |name: &str, axis| Length::from_nm((parameters.axis_value(name, axis) * 1e6).round() as i64);
         let corner = |name: &str| Position::new(Diameter(mm(name, Axis::X)).to_radius(), mm(name, Axis::Z));
-        Self { minus: corner(minus), plus: corner(plus) }
+        let others = |name: &str, none: f64| {
+            let mut places = Places::default();
+            for axis in Axis::OTHERS {
+                // An axis whose coordinate begins anew after a turn has no limits.
+                let rolls_over = axis == Axis::C && machine.c.as_ref().is_some_and(|axis| axis.rolls_over);
+                let is_there = machine.number(axis).is_some() && !rolls_over;
+                let far = Length::from_nm((none * 1e6) as i64);
+                places.put(axis, if is_there { mm(name, axis) } else { far });
+            }
+            places
+        };
+        Self {
+            minus: corner(minus),
+            plus: corner(plus),
+            others_minus: others(minus, -NO_LIMIT_MM),
+            others_plus: others(plus, NO_LIMIT_MM),
+        }
     }
 
     /// None of its limits was ever set.
@@ -51,6 +74,44 @@ impl Area {
             && is_far(self.plus.x.to_diameter().0)
             && is_far(self.minus.z)
             && is_far(self.plus.z)
+            && Axis::OTHERS.iter().all(|axis| !self.is_limited(*axis))
+    }
+
+    /// Whether an axis beyond X and Z has limits.
+    fn is_limited(&self, axis: Axis) -> bool {
+        let is_far = |length: Length| length.to_mm().abs() >= NO_LIMIT_MM;
+        !(is_far(self.others_minus.value(axis)) && is_far(self.others_plus.value(axis)))
+    }
+
+    /// How the axes beyond X and Z leave the area at the end of a move. They come there on the straight way.
+    fn left_by_others(&self, axes: [bool; 5], there: Places) -> Option<Breach> {
+        let is_left = |axis: &Axis| {
+            let place = there.value(*axis);
+            let is_plus = place > self.others_plus.value(*axis);
+            (is_plus || place < self.others_minus.value(*axis)).then_some(Breach { axis: *axis, is_plus })
+        };
+        let looked_at = |axis: &&Axis| axes[**axis as usize] && self.is_limited(**axis);
+        Axis::OTHERS.iter().filter(looked_at).find_map(is_left)
+    }
+
+    /// How a move enters the inside: the axes beyond X and Z that are looked at come inside on their way `from` to
+    /// `to`, and X and Z are there.
+    fn entered(&self, stretch: Stretch, axes: [bool; 5], from: Places, to: Places) -> Option<Breach> {
+        let looked_at = |axis: &&Axis| axes[**axis as usize] && self.is_limited(**axis);
+        let mut others = Axis::OTHERS.iter().filter(looked_at);
+        let comes_inside = |axis: &Axis| {
+            let (a, b) = (from.value(*axis), to.value(*axis));
+            a.max(b) > self.others_minus.value(*axis) && a.min(b) < self.others_plus.value(*axis)
+        };
+        if !others.clone().all(comes_inside) {
+            return None;
+        }
+        let breach = stretch.enters(self, axes)?;
+        let moving = others.find(|axis| from.value(**axis) != to.value(**axis));
+        Some(match moving.filter(|_| stretch.from == stretch.to) {
+            Some(axis) => Breach { axis: *axis, is_plus: to.value(*axis) > from.value(*axis) },
+            None => breach,
+        })
     }
 
     /// The limit of an axis on the side that a way towards plus meets first or last.
@@ -59,6 +120,7 @@ impl Area {
         match axis {
             Axis::X => corner.x.to_diameter().0,
             Axis::Z => corner.z,
+            axis => if is_plus { self.others_plus } else { self.others_minus }.value(axis),
         }
     }
 }
@@ -68,11 +130,11 @@ impl Area {
 pub(crate) struct Strokes {
     outer: Area,
     pub(crate) second: Area,
-    /// Axes that check 2 looks at: X, Z.
-    second_axes: [bool; 2],
+    /// Axes that check 2 looks at, in the order of [`Axis::ALL`].
+    second_axes: [bool; 5],
     second_forbids_outside: bool,
     third: Area,
-    third_axes: [bool; 2],
+    third_axes: [bool; 5],
     /// Check 1 waits for the reference return; the others always do.
     outer_needs_reference: bool,
     before_move: bool,
@@ -100,14 +162,15 @@ fn point(place: Position<MachineTurret>) -> Point {
 }
 
 impl Strokes {
-    pub(crate) fn new(parameters: &Parameters) -> Self {
-        let axes = |name: &str| [Axis::X, Axis::Z].map(|axis| parameters.axis_value(name, axis) != 0.0);
+    pub(crate) fn new(parameters: &Parameters, machine: &MachineAxes) -> Self {
+        let axes = |name: &str| Axis::ALL.map(|axis| parameters.axis_value(name, axis) != 0.0);
+        let area = |plus, minus| Area::new(parameters, machine, plus, minus);
         Self {
-            outer: Area::new(parameters, "stroke-plus", "stroke-minus"),
-            second: Area::new(parameters, "stroke-two-plus", "stroke-two-minus"),
+            outer: area("stroke-plus", "stroke-minus"),
+            second: area("stroke-two-plus", "stroke-two-minus"),
             second_axes: axes("stroke-two-of-axis"),
             second_forbids_outside: parameters.bit("stroke-two-forbids-outside"),
-            third: Area::new(parameters, "stroke-three-plus", "stroke-three-minus"),
+            third: area("stroke-three-plus", "stroke-three-minus"),
             third_axes: axes("stroke-three-of-axis"),
             outer_needs_reference: parameters.bit("stroke-one-after-reference"),
             before_move: parameters.bit("stroke-check-before-move"),
@@ -117,7 +180,7 @@ impl Strokes {
 
     /// Whether any check can speak at all.
     pub(crate) fn is_armed(&self, second_is_on: bool) -> bool {
-        let looks = |area: &Area, axes: [bool; 2]| !area.is_unset() && axes.contains(&true);
+        let looks = |area: &Area, axes: [bool; 5]| !area.is_unset() && axes.contains(&true);
         !self.is_off
             && (!self.outer.is_unset()
                 || (second_is_on && looks(&self.second, self.second_axes))
@@ -163,9 +226,10 @@ impl Stretch {
                     return;
                 }
                 let start = libm::atan2(from.x - centre.x, from.z - centre.z);
-                let angles = match axis {
-                    Axis::X => [libm::asin(rise), std::f64::consts::PI - libm::asin(rise)],
-                    Axis::Z => [libm::acos(rise), -libm::acos(rise)],
+                let angles = if axis == Axis::X {
+                    [libm::asin(rise), std::f64::consts::PI - libm::asin(rise)]
+                } else {
+                    [libm::acos(rise), -libm::acos(rise)]
                 };
                 for angle in angles {
                     let way = (angle - start) * sweep.signum();
@@ -209,7 +273,7 @@ impl Stretch {
     }
 
     /// How the way enters the inside of an area; an axis that is not looked at is always inside.
-    fn enters(&self, area: &Area, axes: [bool; 2]) -> Option<Breach> {
+    fn enters(&self, area: &Area, axes: [bool; 5]) -> Option<Breach> {
         let rows = [
             (Axis::X, axes[0], area.minus.x.to_mm(), area.plus.x.to_mm()),
             (Axis::Z, axes[1], area.minus.z.to_mm(), area.plus.z.to_mm()),
@@ -255,21 +319,43 @@ impl Core {
             // nearer to the axis on the way is not looked at.
             let (real, _) = self.axes.interpolation.axes_at(to, self.axes.v, &Shape::Line, self.axes.at.c);
             let end = machine(real);
-            return self.check_stretch(Stretch { from: end, to: end, arc: None }, end);
+            return self.check_stretch(
+                Stretch { from: end, to: end, arc: None },
+                end,
+                self.others_way(action),
+            );
         }
+        let others = self.others_way(action);
         let (from, to) = (machine(from), machine(to));
         let whole = Stretch { from, to, arc: None };
         match action {
             Action::Rapid { path: RapidPath::EachAxis, .. } => {
                 let bend = self.bend(from, to);
-                self.check_stretch(Stretch { from, to: bend, arc: None }, to)?;
-                self.check_stretch(Stretch { from: bend, to, arc: None }, to)
+                self.check_stretch(Stretch { from, to: bend, arc: None }, to, others)?;
+                self.check_stretch(Stretch { from: bend, to, arc: None }, to, others)
             }
             Action::Feed { shape: Shape::Arc { turn, centre }, .. } => {
-                self.check_stretch(Stretch { arc: Some((*turn, machine(*centre))), ..whole }, to)
+                self.check_stretch(Stretch { arc: Some((*turn, machine(*centre))), ..whole }, to, others)
             }
-            _ => self.check_stretch(whole, to),
+            _ => self.check_stretch(whole, to, others),
         }
+    }
+
+    /// Where the axes beyond X and Z come from and where a move ends for them, in machine coordinates.
+    fn others_way(&self, action: &Action) -> [Places; 2] {
+        let (axes, mut to) = (&self.axes, self.axes.at);
+        let from = match action.others() {
+            None => to,
+            Some(ends) => {
+                to = Places {
+                    c: ends.c.unwrap_or(to.c),
+                    y: ends.y.unwrap_or(to.y),
+                    b: ends.b.unwrap_or(to.b),
+                };
+                axes.came_from
+            }
+        };
+        [from.plus(axes.preset), to.plus(axes.preset)]
     }
 
     /// Where the shorter way of a rapid move on which each axis goes at its own rate ends.
@@ -287,17 +373,25 @@ impl Core {
         }
     }
 
-    fn check_stretch(&self, stretch: Stretch, end: Position<MachineTurret>) -> Result<(), Alarm> {
+    fn check_stretch(
+        &self,
+        stretch: Stretch,
+        end: Position<MachineTurret>,
+        [others_from, others_to]: [Places; 2],
+    ) -> Result<(), Alarm> {
         let strokes = &self.strokes;
+        let left_by_others = |area: &Area, axes| area.left_by_others(axes, others_to);
         if !strokes.outer.is_unset() && (self.homing.is_made || !strokes.outer_needs_reference) {
             let end = Stretch { from: end, to: end, arc: None };
             if strokes.before_move
-                && let Some(breach) = end.leaves(&strokes.outer)
+                && let Some(breach) =
+                    end.leaves(&strokes.outer).or_else(|| left_by_others(&strokes.outer, [true; 5]))
             {
                 let key = if breach.is_plus { "stroke-before-move-plus" } else { "stroke-before-move-minus" };
                 return Err(self.stroke_alarm(key, breach, &strokes.outer, true));
             }
-            if let Some(breach) = stretch.leaves(&strokes.outer) {
+            let breach = stretch.leaves(&strokes.outer);
+            if let Some(breach) = breach.or_else(|| left_by_others(&strokes.outer, [true; 5])) {
                 let key = if breach.is_plus { "stroke-one-plus" } else { "stroke-one-minus" };
                 return Err(self.stroke_alarm(key, breach, &strokes.outer, true));
             }
@@ -315,9 +409,9 @@ impl Core {
                 if !strokes.second_axes[1] {
                     (area.minus.z, area.plus.z) = (-far, far);
                 }
-                stretch.leaves(&area)
+                stretch.leaves(&area).or_else(|| left_by_others(&area, strokes.second_axes))
             } else {
-                stretch.enters(&strokes.second, strokes.second_axes)
+                strokes.second.entered(stretch, strokes.second_axes, others_from, others_to)
             };
             if let Some(breach) = breach {
                 let key = if breach.is_plus { "stroke-two-plus-reached" } else { "stroke-two-minus-reached" };
@@ -326,7 +420,7 @@ impl Core {
         }
         if !strokes.third.is_unset()
             && strokes.third_axes.contains(&true)
-            && let Some(breach) = stretch.enters(&strokes.third, strokes.third_axes)
+            && let Some(breach) = strokes.third.entered(stretch, strokes.third_axes, others_from, others_to)
         {
             let key = if breach.is_plus { "stroke-three-plus-reached" } else { "stroke-three-minus-reached" };
             return Err(self.stroke_alarm(key, breach, &strokes.third, false));
@@ -355,6 +449,9 @@ impl Core {
         let letters = match axis {
             Axis::X => [b'X', b'U'],
             Axis::Z => [b'Z', b'W'],
+            Axis::C => [b'C', b'H'],
+            Axis::Y => [b'Y', b'V'],
+            Axis::B => [b'B', b'B'],
         };
         let mut block = Block::new();
         scan_block(self.line_bytes(), self.at.first_byte as usize, &mut block);

@@ -14,7 +14,9 @@ use turnwright_units::{
     Diameter, Displacement, LeastIncrement, Length, MachineTurret, Position, Radius, WorkTip,
 };
 
+use crate::axes::Places;
 use crate::machine::Core;
+use crate::other_zeros::{OtherZeros, refuse_axes_not_there, take_setup_zeros};
 
 /// The standard work systems.
 pub(crate) const STANDARD_SYSTEMS: usize = 6;
@@ -56,7 +58,7 @@ impl WorkZero {
     }
 
     /// The zero that a setup file means by `G54`, `G54.1 P3`, `EXT` or `SHIFT`.
-    fn named(name: &str) -> Option<Self> {
+    pub(crate) fn named(name: &str) -> Option<Self> {
         let name = name.to_ascii_uppercase().replace(' ', "");
         match name.as_str() {
             "EXT" => return Some(Self::External),
@@ -73,11 +75,11 @@ impl WorkZero {
 }
 
 /// Parameters of the standard work systems.
-const WORK_PARAMETERS: [&str; STANDARD_SYSTEMS] =
+pub(crate) const WORK_PARAMETERS: [&str; STANDARD_SYSTEMS] =
     ["work-zero-1", "work-zero-2", "work-zero-3", "work-zero-4", "work-zero-5", "work-zero-6"];
 
 /// Parameters of the reference points.
-const REFERENCE_PARAMETERS: [&str; 4] =
+pub(crate) const REFERENCE_PARAMETERS: [&str; 4] =
     ["reference-position-1", "reference-position-2", "reference-position-3", "reference-position-4"];
 
 /// No way at all.
@@ -102,6 +104,8 @@ pub(crate) struct Zeros {
     other_turret: Radius,
     /// The reference points 1 to 4.
     pub(crate) reference: [Position<MachineTurret>; 4],
+    /// The same for the axes beyond X and Z.
+    pub(crate) others: OtherZeros,
 }
 
 fn displacement(pair: AxisPair) -> Result<Displacement<MachineTurret>, SetupFault> {
@@ -144,7 +148,11 @@ impl Zeros {
         }
         // The machine file gives the place of the first reference point in work coordinates.
         let seen = displacement(machine.reference)?;
+        refuse_axes_not_there(control, &machine.axes)?;
+        let mut others = OtherZeros::new(control, systems.len(), &machine.axes);
+        take_setup_zeros(&mut others, setup, &machine.axes)?;
         let mut zeros = Self {
+            others,
             base: Displacement::new(reference[0].x - seen.x, reference[0].z - seen.z),
             external: parameter("work-zero-external")?,
             external_is_opposite: control.parameters.bit("external-offset-opposite"),
@@ -157,7 +165,7 @@ impl Zeros {
             reference,
         };
         for (name, pair) in &setup.work {
-            let value = displacement(*pair)?;
+            let value = displacement(AxisPair { x: pair.x, z: pair.z })?;
             match WorkZero::named(name).and_then(|zero| zeros.slot(zero)) {
                 Some(slot) if *slot == NOTHING || *slot == value => *slot = value,
                 Some(_) => {
@@ -185,6 +193,7 @@ impl Zeros {
             match axis {
                 Axis::X => place.x = Diameter(value).to_radius(),
                 Axis::Z => place.z = value,
+                Axis::C | Axis::Y | Axis::B => self.others.reference[point].put(axis, value),
             }
         }
     }
@@ -223,12 +232,13 @@ impl Zeros {
         Some(match axis {
             Axis::X => stored.x.to_diameter().0,
             Axis::Z => stored.z,
+            Axis::C | Axis::Y | Axis::B => return self.others.get(zero, axis),
         })
     }
 
     /// Both values, X as a diameter; nothing for a system that the control does not have.
     pub(crate) fn pair(&self, zero: WorkZero) -> [Length; 2] {
-        Axis::ALL.map(|axis| self.get(zero, axis).unwrap_or(Length::ZERO))
+        Axis::TURNING.map(|axis| self.get(zero, axis).unwrap_or(Length::ZERO))
     }
 
     /// Stores a value, X as a diameter; `None` when the control has no such system. The place of the tool is not
@@ -238,6 +248,10 @@ impl Zeros {
         *slot = match axis {
             Axis::X => Displacement::new(Diameter(value).to_radius(), slot.z),
             Axis::Z => Displacement::new(slot.x, value),
+            Axis::C | Axis::Y | Axis::B => {
+                self.others.row(zero)?.put(axis, value);
+                return Some(());
+            }
         };
         Some(())
     }
@@ -245,11 +259,12 @@ impl Zeros {
     /// Takes the local shift back.
     pub(crate) fn clear_local(&mut self) {
         self.local = NOTHING;
+        self.others.local = Places::default();
     }
 
     /// Whether a local shift is in force.
     pub(crate) fn has_local(&self) -> bool {
-        self.local != NOTHING
+        self.local != NOTHING || self.others.local != Places::default()
     }
 
     /// From machine zero to the zero of a work system with every shift but the tool's.
@@ -267,6 +282,17 @@ impl Zeros {
             WorkpieceShift::AddsToCoordinates => minus(zero, self.workpiece_shift),
         };
         plus(plus(zero, self.preset), self.local)
+    }
+}
+
+impl Zeros {
+    /// The same for the axes beyond X and Z.
+    pub(crate) fn of_others(&self, system: usize) -> Places {
+        let shift_moves_zero = match self.shift_rule {
+            WorkpieceShift::MovesZero => true,
+            WorkpieceShift::AddsToCoordinates => false,
+        };
+        self.others.of_work(system, self.external_is_opposite, shift_moves_zero)
     }
 }
 
@@ -322,6 +348,8 @@ impl Core {
     pub(crate) fn start_at_reference(&mut self) {
         self.modal.position = self.to_work(self.zeros.reference[0]);
         self.tip = self.modal.position;
+        self.axes.preset = self.zeros.of_others(self.modal.work);
+        self.axes.at = self.zeros.others.reference[0].minus(self.axes.preset);
     }
 
     /// Changes a shift or the offset; the tool stays where it is and has new coordinates. A new movement of the
@@ -331,9 +359,16 @@ impl Core {
         let (place, tip) = (self.modal.position, self.tip);
         let (place_in_work, tip_in_work) = (self.in_work(place), self.in_work(tip));
         let offset_before = self.modal.offset_in_force;
+        let others_before = self.zeros.of_others(self.modal.work);
         change(self);
         let offset = self.modal.offset_in_force;
-        self.offset_y(offset.shift_y - offset_before.shift_y, offset.movement_y - offset_before.movement_y);
+        let (shift_y, movement_y) =
+            (offset.shift_y - offset_before.shift_y, offset.movement_y - offset_before.movement_y);
+        self.move_other_zeros(
+            self.zeros.of_others(self.modal.work).minus(others_before),
+            shift_y,
+            movement_y,
+        );
         let (after, tip_after) = (self.zero(), self.tip_zero());
         let moved = |place: Position<WorkTip>, before: Displacement<_>, after: Displacement<_>| {
             Position::new(place.x + before.x - after.x, place.z + before.z - after.z)

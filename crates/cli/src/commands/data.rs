@@ -10,7 +10,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 use turnwright_control::{
-    Control, DEFAULT_CONTROL, Language, OffsetRow, ParameterImport, Setup, export_parameters,
+    Axis, Control, DEFAULT_CONTROL, Language, OffsetRow, ParameterImport, Setup, ZeroRow, export_parameters,
 };
 use turnwright_diagnostics::Diagnostic;
 use turnwright_interpreter::{DataFault, export_offsets, export_work_zeros, import_data};
@@ -235,10 +235,15 @@ fn human(control: &Control, setup: &Setup, speech: Speech) -> String {
         section("data-offsets", &table, true);
     }
     if !setup.work.is_empty() {
-        let mut table = Table::new(&[Side::Left, Side::Right, Side::Right]);
-        table.row(["", "X", "Z"]);
-        for (name, pair) in &setup.work {
-            table.row([name.clone(), pair.x.to_string(), pair.z.to_string()]);
+        // X, Z, and the axes of which some zero is set.
+        let is_used =
+            |axis: &Axis| setup.work.values().any(|row| row.shown().any(|(shown, _)| shown == *axis));
+        let axes: Vec<Axis> = Axis::ALL.into_iter().filter(is_used).collect();
+        let mut table = Table::new(&[&[Side::Left][..], &vec![Side::Right; axes.len()]].concat());
+        table.row([""].into_iter().chain(axes.iter().map(|axis| axis.letter())));
+        for (name, row) in &setup.work {
+            let values = axes.iter().map(|axis| row.value(*axis).to_string());
+            table.row([name.clone()].into_iter().chain(values));
         }
         section("data-work", &table, true);
     }
@@ -275,7 +280,7 @@ fn as_json(control: &Control, setup: &Setup, speech: Speech) -> Value {
         })
         .collect();
     let work: Map<String, Value> =
-        setup.work.iter().map(|(name, pair)| (name.clone(), json!({ "x": pair.x, "z": pair.z }))).collect();
+        setup.work.iter().map(|(name, row)| (name.clone(), zero_json(row))).collect();
     let parameters: Vec<Value> = parameters(control, setup, speech.language)
         .into_iter()
         .map(|[number, value, name]| {
@@ -290,4 +295,10 @@ fn as_json(control: &Control, setup: &Setup, speech: Speech) -> Value {
         "parameters": parameters,
         "kept": setup.kept,
     })
+}
+
+/// A stored zero: X, Z, and of the other axes what is set.
+fn zero_json(row: &ZeroRow) -> Value {
+    let axes = row.shown().map(|(axis, value)| (axis.letter().to_lowercase(), json!(value)));
+    Value::Object(axes.collect())
 }

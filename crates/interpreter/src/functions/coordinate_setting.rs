@@ -25,8 +25,10 @@ pub(super) static COORDINATE_SETTING: Function = Function::one_shot("coordinate-
     .with_speed_limit()
     .with_other_axes()
     .setting_data();
-pub(super) static COORDINATE_PRESET: Function = Function::one_shot("coordinate-preset", coordinate_preset);
-pub(super) static LOCAL_COORDINATES: Function = Function::one_shot("local-coordinates", local_coordinates);
+pub(super) static COORDINATE_PRESET: Function =
+    Function::one_shot("coordinate-preset", coordinate_preset).with_other_axes();
+pub(super) static LOCAL_COORDINATES: Function =
+    Function::one_shot("local-coordinates", local_coordinates).with_other_axes();
 
 const CROSS: u32 = letters(b"XU");
 const ALONG: u32 = letters(b"ZW");
@@ -78,10 +80,18 @@ fn coordinate_preset(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> 
             return Err(core.alarm("data-out-of-range", word));
         }
     }
+    for axis in core.other_values(block)? {
+        if !axis.value.is_zero() {
+            return Err(core.alarm("data-out-of-range", axis.word));
+        }
+    }
     core.suspend_compensation()?;
+    let others = core.others_named(block).collect::<Vec<_>>();
     core.with_new_zero(|core| {
         clear(&mut core.zeros.preset, block.present());
         clear(&mut core.zeros.local, block.present());
+        core.zeros.others.preset.clear(others.iter().copied());
+        core.zeros.others.local.clear(others.iter().copied());
     });
     Ok(())
 }
@@ -102,7 +112,15 @@ fn local_coordinates(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> 
         local.z = if is_increment && adds { local.z + value } else { value };
         core.missing_point(word);
     }
+    let mut others = core.zeros.others.local;
+    for axis in core.other_values(block)? {
+        let before = if axis.is_increment && adds { others.value(axis.axis) } else { Length::ZERO };
+        others.put(axis.axis, before + axis.value);
+    }
     core.suspend_compensation()?;
-    core.with_new_zero(|core| core.zeros.local = local);
+    core.with_new_zero(|core| {
+        core.zeros.local = local;
+        core.zeros.others.local = others;
+    });
     Ok(())
 }

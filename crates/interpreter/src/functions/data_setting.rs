@@ -8,7 +8,7 @@
 //! The new values act with the next T word, or at once by parameter (5001#6). P0 is the workpiece shift.
 //!
 //! `G10 L2 P_ X(U)_ Z(W)_` writes a stored zero: P0 the external offset, P1 to P6 the standard work systems;
-//! `G10 L20 P_` the additional ones. It acts at once.
+//! `G10 L20 P_` the additional ones; other axes of the machine by their own letters. It acts at once.
 //!
 //! `G10 L50` (parameters; newer controls L52) and `G10 L3` (tool life) open a list that `G11` closes: see
 //! `data_list.rs`.
@@ -26,12 +26,15 @@ use crate::block::Call;
 use crate::data_list::DataList;
 use crate::machine::Core;
 use crate::offsets::{OffsetFault, OffsetField, OffsetTable};
+use crate::other_zeros::AxisValue;
 use crate::report::Alarm;
 use crate::words::Role;
 use crate::zeros::{STANDARD_SYSTEMS, WorkZero};
 
-pub(super) static DATA_SETTING: Function =
-    Function::one_shot("data-setting", data_setting).with_letters(b"PLRCQYV").setting_data();
+pub(super) static DATA_SETTING: Function = Function::one_shot("data-setting", data_setting)
+    .with_letters(b"PLRCQYV")
+    .with_other_axes()
+    .setting_data();
 
 pub(super) static DATA_SETTING_END: Function = Function::one_shot("data-setting-end", |_, _| Ok(()));
 
@@ -103,6 +106,9 @@ impl Core {
             OffsetFault::Value => core.alarm(fault.key(), word),
         };
         let mut is_empty = true;
+        if let Some(word) = block.words.iter().find(|word| matches!(word.address, b'H' | b'B' | b'J')) {
+            return Err(self.alarm("data-setting-words-illegal", word));
+        }
         for (field, absolute, increment) in COLUMNS {
             if !block.has(absolute) && !block.has(increment) {
                 continue;
@@ -145,17 +151,22 @@ impl Core {
 
     /// Writes the axes that the block names into a stored zero.
     fn write_work_zero(&mut self, block: &Block, zero: WorkZero, target: &Word) -> Result<(), Alarm> {
-        self.refuse_other_words(block, b"GNLPXZUWTSMF")?;
-        let mut values: [Option<Length>; 2] = [None; 2];
+        let is_axis = |word: &Word| self.axes.letters & Block::bit(word.address) != 0 && word.address != b'J';
+        let is_own = |word: &Word| b"GNLPXZUWTSMF".contains(&word.address) || is_axis(word);
+        if let Some(word) = block.words.iter().find(|word| word.comma || !is_own(word)) {
+            return Err(self.alarm("data-setting-words-illegal", word));
+        }
+        let mut values: Vec<(Axis, Length)> = Vec::new();
         for (axis, absolute, increment) in [(Axis::X, b'X', b'U'), (Axis::Z, b'Z', b'W')] {
             if !block.has(absolute) && !block.has(increment) {
                 continue;
             }
             let (word, is_increment) = self.axis_word(block, absolute, increment)?;
             self.missing_point(word);
-            let value = match axis {
-                Axis::X => self.radius(word, Role::XCoordinate)?.to_diameter().0,
-                Axis::Z => self.length(word)?,
+            let value = if axis == Axis::X {
+                self.radius(word, Role::XCoordinate)?.to_diameter().0
+            } else {
+                self.length(word)?
             };
             let Some(before) = self.work_zero(zero, axis) else {
                 return Err(self.alarm("data-setting-format", target));
@@ -164,16 +175,24 @@ impl Core {
             if value.abs().nm() >= self.settings.length_limit_nm {
                 return Err(self.alarm("data-out-of-range", word));
             }
-            values[axis as usize] = Some(value);
+            values.push((axis, value));
         }
-        if values == [None; 2] {
+        for AxisValue { axis, word, is_increment, value } in self.other_values(block)? {
+            let Some(before) = self.work_zero(zero, axis) else {
+                return Err(self.alarm("data-setting-format", target));
+            };
+            let value = if is_increment { before + value } else { value };
+            if value.abs().nm() >= self.settings.length_limit_nm {
+                return Err(self.alarm("data-out-of-range", word));
+            }
+            values.push((axis, value));
+        }
+        if values.is_empty() {
             return Err(self.alarm("data-setting-format", target));
         }
         self.with_new_zero(|core| {
-            for axis in Axis::ALL {
-                if let Some(value) = values[axis as usize] {
-                    core.zeros.set(zero, axis, value);
-                }
+            for (axis, value) in values {
+                core.zeros.set(zero, axis, value);
             }
         });
         Ok(())

@@ -52,15 +52,19 @@ fn measure(core: &mut Core, call: &mut Call<'_>, axis: Axis) -> Result<(), Alarm
         return Err(core.alarm_at("feed-missing", call.word));
     }
     let feed = Feed::PerMinute(FeedPerMinute(feed));
-    let [approach, window] = match axis {
-        Axis::X => ["measuring-approach-x", "measuring-window-x"],
-        Axis::Z => ["measuring-approach-z", "measuring-window-z"],
+    let [approach, window] = if axis == Axis::X {
+        ["measuring-approach-x", "measuring-window-x"]
+    } else {
+        ["measuring-approach-z", "measuring-window-z"]
     }
     .map(|name| Length::from_nm((core.control.parameters.value(name) * 1e6).round() as i64));
     let along = |place: Position<WorkTip>| if axis == Axis::X { place.x.0 } else { place.z };
-    let moved = |place: Position<WorkTip>, way: Length| match axis {
-        Axis::X => Position::new(place.x + Radius(way), place.z),
-        Axis::Z => Position::new(place.x, place.z + way),
+    let moved = |place: Position<WorkTip>, way: Length| {
+        if axis == Axis::X {
+            Position::new(place.x + Radius(way), place.z)
+        } else {
+            Position::new(place.x, place.z + way)
+        }
     };
     let way = along(nominal) - along(core.tip);
     let towards = |length: Length| if way.signum() < 0 { -length } else { length };

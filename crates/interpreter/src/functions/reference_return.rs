@@ -10,8 +10,7 @@
 //! point; its increments count from the intermediate point. `G27 X(U)_ Z(W)_` goes to the point at rapid and stops
 //! with an alarm when a named axis is not at its first reference point there.
 //!
-//! Axes beyond X and Z that the block names go with them. Of these the machine file gives the first reference point;
-//! the further ones are their machine zero.
+//! Axes beyond X and Z that the block names go with them.
 //!
 //! The reference points are machine coordinates (1240 to 1243), so no shift and no offset changes where they lie.
 //! By parameter the return cancels the local shift (1201#2) and the preset (1201#3) of the axis, and the 980
@@ -172,7 +171,7 @@ impl Core {
         })?;
         self.leave_out_movement(present & CROSS != 0, present & ALONG != 0);
         if number == 0 {
-            self.clear_shifts_at_home(present);
+            self.clear_shifts_at_home(block);
         }
         if self.settings.reference_return_cancels_offset {
             (self.modal.offset, self.modal.geometry) = (0, 0);
@@ -183,12 +182,14 @@ impl Core {
     }
 
     /// Shifts that the return to the first reference point cancels by parameter, on the named axes.
-    fn clear_shifts_at_home(&mut self, present: u32) {
+    fn clear_shifts_at_home(&mut self, block: &Block) {
         let (local, preset) =
             (self.settings.reference_return_clears_local, self.settings.reference_return_clears_preset);
         if !(local || preset) {
             return;
         }
+        let present = block.present();
+        let others = self.others_named(block).collect::<Vec<_>>();
         let without = |shift: &mut Displacement<_>| {
             if present & CROSS != 0 {
                 shift.x = turnwright_units::Radius::ZERO;
@@ -200,9 +201,11 @@ impl Core {
         self.with_new_zero(|core| {
             if local {
                 without(&mut core.zeros.local);
+                core.zeros.others.local.clear(others.iter().copied());
             }
             if preset {
                 without(&mut core.zeros.preset);
+                core.zeros.others.preset.clear(others.iter().copied());
             }
         });
     }

@@ -1,7 +1,7 @@
 //! `stroke-check-on`, `stroke-check-off` — the second stored stroke check (G22, G23).
 //!
 //! `G22 X_ Z_ I_ K_` switches the check on and sets its area: X and Z are the plus limits, I and K the minus limits,
-//! all machine coordinates, X and I as diameters; a limit left out stays as it is. They overwrite the parameters
+//! all machine coordinates, X and I as diameters, on machines with Y also Y and J; a limit left out stays as it is. They overwrite the parameters
 //! 1322 and 1323. `G23` switches the check off.
 //!
 //! The codes stand alone in their block: where the control insists, another word is an alarm; elsewhere it is a
@@ -21,15 +21,17 @@ use crate::report::Alarm;
 use crate::words::Role;
 
 pub(super) static STROKE_CHECK_ON: Function =
-    Function::one_shot("stroke-check-on", switch_on).with_letters(b"IK");
+    Function::one_shot("stroke-check-on", switch_on).with_letters(b"IK").with_other_axes();
 pub(super) static STROKE_CHECK_OFF: Function = Function::mode("stroke-check-off", switch_off);
 
 fn switch_on(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     let block = call.block;
-    if let Some(word) = block.word(b'U').or(block.word(b'W')) {
+    let has_y = core.axes.machine.y.is_some();
+    let foreign: &[u8] = if has_y { b"UWCHVB" } else { b"UWCHVBYJ" };
+    if let Some(word) = foreign.iter().find_map(|letter| block.word(*letter)) {
         return Err(core.alarm("illegal-address", word));
     }
-    core.refuse_company(call, letters(b"GNOXZIK"))?;
+    core.refuse_company(call, letters(b"GNOXZIKYJ"))?;
     let mut area = core.strokes.second;
     let place = |core: &mut Core, x: u8, z: u8, corner: &mut Position<_>| -> Result<(), Alarm> {
         if let Some(word) = block.word(x) {
@@ -44,8 +46,15 @@ fn switch_on(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     };
     place(core, b'X', b'Z', &mut area.plus)?;
     place(core, b'I', b'K', &mut area.minus)?;
-    let names_limits = block.present() & letters(b"XZIK") != 0;
-    if names_limits && (area.plus.x <= area.minus.x || area.plus.z <= area.minus.z) {
+    for (letter, corner) in [(b'Y', &mut area.others_plus), (b'J', &mut area.others_minus)] {
+        if let Some(word) = block.word(letter) {
+            corner.y = core.length(word)?;
+            core.missing_point(word);
+        }
+    }
+    let names_limits = block.present() & letters(b"XZIKYJ") != 0;
+    let is_empty_across = has_y && area.others_plus.y <= area.others_minus.y;
+    if names_limits && (area.plus.x <= area.minus.x || area.plus.z <= area.minus.z || is_empty_across) {
         core.warn_block("stroke-area-empty");
     }
     core.strokes.second = area;
@@ -79,7 +88,7 @@ impl Core {
         match stranger {
             Some(word) if insists => Err(self.alarm("stroke-check-not-alone", word)),
             _ if insists && self.strokes.is_off => Err(self.alarm_at("stroke-check-not-alone", call.word)),
-            Some(word) if call.block.present() & letters(b"XZIK") != 0 => {
+            Some(word) if call.block.present() & letters(b"XZIKYJ") != 0 => {
                 self.warn("stroke-check-with-others", word);
                 Ok(())
             }

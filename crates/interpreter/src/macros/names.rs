@@ -83,6 +83,9 @@ impl Core {
             _ => match is_whole(axis, 8.0).then(|| self.position_axis((axis as u32).saturating_sub(1))) {
                 Some(Axis::X) => ParameterAxis::X.letter(),
                 Some(Axis::Z) => ParameterAxis::Z.letter(),
+                Some(Axis::C) => ParameterAxis::C.letter(),
+                Some(Axis::Y) => ParameterAxis::Y.letter(),
+                Some(Axis::B) => ParameterAxis::B.letter(),
                 _ => return Err(self.parameter_fault("argument-out-of-range")),
             },
         };

@@ -108,7 +108,10 @@ impl Core {
         Some(match self.position_axis(place) {
             Axis::X => Stored::Zero(zero, WorkAxis::X),
             Axis::Z => Stored::Zero(zero, WorkAxis::Z),
-            _ => Stored::NoZero,
+            Axis::C => Stored::Zero(zero, WorkAxis::C),
+            Axis::Y => Stored::Zero(zero, WorkAxis::Y),
+            Axis::B => Stored::Zero(zero, WorkAxis::B),
+            Axis::None => Stored::NoZero,
         })
     }
 
@@ -118,6 +121,7 @@ impl Core {
         Some(match self.stored(variable)? {
             Stored::Offset(table, field, number) => length(self.offset_value(table, field, number).ok()?),
             Stored::Tip(number) => f64::from(self.offset_tip(number).ok()?),
+            Stored::Zero(zero, axis @ (WorkAxis::C | WorkAxis::B)) => self.work_zero(zero, axis)?.to_mm(),
             Stored::Zero(zero, axis) => {
                 length(self.work_zero(zero, axis)?) / if self.is_radius(axis) { 2.0 } else { 1.0 }
             }
@@ -134,7 +138,12 @@ impl Core {
             Stored::Offset(..) => self.offset_increment(),
             _ => self.modal.increment(&self.settings),
         };
-        let length = Length::from_mm_rounded(value * self.unit_mm(), increment);
+        // Degrees know no inch.
+        let (unit_mm, increment) = match stored {
+            Stored::Zero(_, WorkAxis::C | WorkAxis::B) => (1.0, self.settings.metric_increment),
+            _ => (self.unit_mm(), increment),
+        };
+        let length = Length::from_mm_rounded(value * unit_mm, increment);
         let is_count = (0.0..=f64::from(u32::MAX)).contains(&value.round());
         Some(match stored {
             Stored::Offset(table, field, number) => match length {
