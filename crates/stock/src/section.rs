@@ -3,7 +3,7 @@
 use turnwright_geometry::{Bounds, Outline, OutlineFault, Point};
 
 use crate::WELD_MM;
-use crate::curve::Content;
+use crate::curve::{Content, Curve};
 use crate::cutter::Cutter;
 use crate::decompose::slabs_of;
 use crate::knife::{Knife, Stops};
@@ -89,6 +89,19 @@ impl Section {
         self.cut(sweep.rest(&Cutter::new(outline), Point::default()))
     }
 
+    /// Takes all material of another section out of this one: what a part has too much when the other is its drawing,
+    /// what it has too little when this one is.
+    pub fn cut_section(&mut self, other: &Self) -> Removed {
+        let (mut removed, mut stencil) = (Removed::default(), Stencil::default());
+        for (slab, bands) in other.row.slabs() {
+            for band in bands {
+                stencil.set(band, slab.from, slab.to);
+                removed = removed.and(self.cut_stencil(&stencil));
+            }
+        }
+        removed
+    }
+
     fn cut_stencil(&mut self, stencil: &Stencil) -> Removed {
         let mut knife = Knife::new(stencil, &mut self.stops);
         self.row.carve(&mut knife, &mut self.left);
@@ -152,22 +165,52 @@ impl Section {
     /// stands, the larger of its two sides counts.
     pub fn rings(&self, z: f64) -> Vec<(f64, f64)> {
         let at_z = self.row.slabs_between(z, z);
-        let mut rings: Vec<(f64, f64)> = at_z
-            .flat_map(|(_, bands)| bands.iter().map(|band| (band.floor.at(z), band.roof.at(z))))
-            .collect();
-        rings.sort_by(|a, b| a.0.total_cmp(&b.0));
-        rings.dedup_by(|next, ring| {
-            let joins = next.0 <= ring.1 + WELD_MM;
-            if joins {
-                ring.1 = ring.1.max(next.1);
+        joined(
+            at_z.flat_map(|(_, bands)| bands.iter().map(|band| (band.floor.at(z), band.roof.at(z))))
+                .collect(),
+        )
+    }
+
+    /// The material at an X, along Z: begin and end of each stretch, mm. Where a level face lies, the larger of its two
+    /// sides counts.
+    pub fn spans(&self, x: f64) -> Vec<(f64, f64)> {
+        let level = Curve::level(x);
+        let mut spans: Vec<(f64, f64)> = Vec::new();
+        for (slab, bands) in self.row.slabs().filter(|(slab, _)| slab.low <= x && x <= slab.high) {
+            for band in bands {
+                let crossings = [band.floor, band.roof].map(|edge| edge.crossings(&level));
+                let mut stops: Vec<f64> = crossings.concat();
+                stops.retain(|stop| slab.from < *stop && *stop < slab.to);
+                stops.push(slab.to);
+                stops.sort_by(f64::total_cmp);
+                let mut from = slab.from;
+                for to in stops {
+                    let middle = (from + to) / 2.0;
+                    if band.floor.at(middle) <= x + WELD_MM && x - WELD_MM <= band.roof.at(middle) {
+                        spans.push((from, to));
+                    }
+                    from = to;
+                }
             }
-            joins
-        });
-        rings
+        }
+        joined(spans)
     }
 
     /// How many slabs hold it: what memory it needs.
     pub fn slab_count(&self) -> usize {
         self.row.len()
     }
+}
+
+/// Stretches in order, those that meet as one.
+fn joined(mut stretches: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    stretches.sort_by(|a, b| a.0.total_cmp(&b.0));
+    stretches.dedup_by(|next, stretch| {
+        let meets = next.0 <= stretch.1 + WELD_MM;
+        if meets {
+            stretch.1 = stretch.1.max(next.1);
+        }
+        meets
+    });
+    stretches
 }

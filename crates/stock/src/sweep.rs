@@ -7,6 +7,7 @@
 use turnwright_geometry::{Bend, Bounds, Point, Segment, Vector};
 
 use crate::WELD_MM;
+use crate::band::Band;
 use crate::chain::{Chain, Side};
 use crate::curve::Curve;
 use crate::cutter::{Convex, Cutter};
@@ -132,12 +133,25 @@ impl Stencil {
         self.place(part, path.range(from, to).0);
     }
 
+    /// The shape of a band.
+    pub(crate) fn set(&mut self, band: &Band, from: f64, to: f64) {
+        for (chain, edge) in [(&mut self.lower, band.floor), (&mut self.upper, band.roof)] {
+            chain.restart(from);
+            chain.push(to, edge);
+        }
+        self.measure();
+    }
+
     /// The same on the other side of the axis.
     pub(crate) fn mirror_into(&self, other: &mut Self) {
         self.lower.mirror_into(&mut other.upper);
         self.upper.mirror_into(&mut other.lower);
+        other.measure();
+    }
+
+    fn measure(&mut self) {
         let least = |chain: &Chain| chain.range(chain.from, chain.to()).0;
-        (other.lower_least, other.upper_least) = (least(&other.lower), least(&other.upper));
+        (self.lower_least, self.upper_least) = (least(&self.lower), least(&self.upper));
     }
 
     /// A part whose way has its lowest X here.

@@ -130,3 +130,44 @@ fn contours_enclose_what_the_section_covers() {
         assert!((of_pieces - section.area_mm2()).abs() < 1e-9, "seed {seed}");
     }
 }
+
+#[test]
+fn a_section_less_another_and_what_they_share_are_the_whole() {
+    for seed in 1..=600 {
+        let mut random = Random::new(seed);
+        let (blank, cuts) = job(&mut random, 8);
+        let mut sweep = Sweep::new();
+        let (mut one, mut other) = (blank.clone(), blank);
+        for (index, (tool, way)) in cuts.iter().enumerate() {
+            cut(if index % 2 == 0 { &mut one } else { &mut other }, &mut sweep, tool, way);
+        }
+        let mut too_much = one.clone();
+        let shared = too_much.cut_section(&other).area_mm2;
+        let mut too_little = other.clone();
+        let shared_too = too_little.cut_section(&one).area_mm2;
+        assert!((shared - shared_too).abs() < 1e-7, "seed {seed}: {shared} {shared_too}");
+        assert!((too_much.area_mm2() + shared - one.area_mm2()).abs() < 1e-9, "seed {seed}");
+        let mut nothing = one.clone();
+        nothing.cut_section(&one);
+        assert!(nothing.area_mm2() < 1e-7, "seed {seed}: {}", nothing.area_mm2());
+        assert_eq!(nothing.bounds(), None, "seed {seed}");
+    }
+}
+
+#[test]
+fn spans_and_rings_see_the_same_material() {
+    for seed in 1..=300 {
+        let mut random = Random::new(seed);
+        let (mut section, cuts) = job(&mut random, 5);
+        let mut sweep = Sweep::new();
+        for (tool, way) in &cuts {
+            cut(&mut section, &mut sweep, tool, way);
+        }
+        for _ in 0..20 {
+            let place = point(random.between(0.0, 21.0), random.between(-41.0, 1.0));
+            let in_ring = section.rings(place.z).iter().any(|ring| ring.0 <= place.x && place.x <= ring.1);
+            let in_span = section.spans(place.x).iter().any(|span| span.0 <= place.z && place.z <= span.1);
+            assert_eq!((in_ring, in_span), (section.contains(place), section.contains(place)), "seed {seed}");
+        }
+    }
+}
