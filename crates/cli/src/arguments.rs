@@ -65,6 +65,7 @@ pub(crate) enum Command {
     Explain(Explain),
     Controls(Controls),
     Data(Data),
+    Setup(SetupOptions),
     Completions(Completions),
     Man(Man),
 }
@@ -277,6 +278,25 @@ pub(crate) struct Data {
     pub(crate) format: LookupFormat,
 }
 
+/// Writes the setup that a program seems to be written for, to be edited.
+///
+/// Stock, chuck and tools are taken from the program where its setup file and its comments leave them open; each
+/// assumption stands as a comment beside its value.
+#[derive(Debug, Args)]
+#[command(name = "setup", after_long_help = examples("setup"))]
+pub(crate) struct SetupOptions {
+    /// The program; - for standard input
+    pub(crate) file: PathBuf,
+    /// Where to write the setup file; - for standard output, which is the default
+    #[arg(short, long, value_name = "FILE.toml", value_hint = clap::ValueHint::FilePath)]
+    pub(crate) output: Option<PathBuf>,
+    /// Form of the diagnostics
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) machine: Machine,
+}
+
 /// Kinds of stored data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Export {
@@ -309,8 +329,8 @@ pub(crate) struct Man {
 }
 
 /// The commands that have a page.
-const COMMAND_NAMES: [&str; 9] =
-    ["run", "check", "trace", "plot", "explain", "controls", "data", "completions", "man"];
+const COMMAND_NAMES: [&str; 10] =
+    ["run", "check", "trace", "plot", "explain", "controls", "data", "setup", "completions", "man"];
 
 /// A text of the help, in the language of the environment: the options are not known yet.
 fn text(key: &'static str) -> &'static str {

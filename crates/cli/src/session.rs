@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use turnwright_control::{
     Control, ControlFault, DEFAULT_CONTROL, Language, Mode, ParameterFault, Setup, SetupFault, control_names,
-    nearest,
+    nearest, setup_comment,
 };
 use turnwright_diagnostics::{Diagnostic, Place, SourceId};
 use turnwright_syntax::{LineEnd, find_line_end};
@@ -171,48 +171,96 @@ fn set_parameter(
     })
 }
 
-/// The setup file that was named, or the one beside the program.
+/// The setup file that was named, or the one beside the program, and over it what comments of the program say.
 fn find_setup(
     text: &ProgramText,
     options: &Machine,
     speech: Speech,
 ) -> Result<(Setup, Option<PathBuf>), Finding> {
-    let path = match (&options.setup, &text.path) {
-        (Some(named), _) => named.clone(),
-        (None, Some(program)) => {
-            let beside = program.with_extension("toml");
-            if beside == *program || !beside.is_file() {
-                return Ok((Setup::default(), None));
-            }
-            beside
-        }
-        (None, None) => return Ok((Setup::default(), None)),
+    let beside = || {
+        let program = text.path.as_ref()?;
+        let beside = program.with_extension("toml");
+        (beside != *program && beside.is_file()).then_some(beside)
     };
-    read_setup(&path, speech).map(|setup| (setup, Some(path)))
+    let path = options.setup.clone().or_else(beside);
+    let content = path.as_deref().map(|path| read_text(path, speech)).transpose()?.unwrap_or_default();
+    if let Some(path) = &path {
+        parse_setup(path, &content)?;
+    }
+    let mut comments = Vec::new();
+    let mut first = None;
+    for (place, comment) in head_comments(text) {
+        let Some(piece) = setup_comment(&comment) else { continue };
+        let refused = |value: String| comment_refused(text, place, &comment, value);
+        comments.push(piece.map_err(refused)?);
+        first.get_or_insert((place, comment));
+    }
+    let setup = Setup::with_comments(&content, comments).map_err(|fault| match (first, &path) {
+        (Some((place, comment)), _) => comment_refused(text, place, &comment, fault.message),
+        (None, path) => invalid_setup(path.as_deref().unwrap_or(Path::new("--setup")), &fault),
+    })?;
+    Ok((setup, path))
+}
+
+/// A comment about the setup that cannot be.
+fn comment_refused(text: &ProgramText, place: Place, comment: &str, value: String) -> Finding {
+    let diagnostic = Diagnostic::error("setup-comment-invalid").at(place);
+    let diagnostic = diagnostic.with("word", format!("({})", comment.trim())).with("value", value);
+    Finding::new(text.name.as_str(), diagnostic).failed().located(text)
+}
+
+/// The comments at the head of a program that may be about its setup, with their places.
+fn head_comments(text: &ProgramText) -> Vec<(Place, String)> {
+    let head = text.head();
+    if !head.windows(5).any(|word| word.eq_ignore_ascii_case(b"SETUP")) {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    let (mut start, mut line) = (0, 1);
+    while start < head.len() {
+        let rest = &head[start..];
+        let end = find_line_end(rest, true).unwrap_or(LineEnd { start: rest.len(), next: rest.len() });
+        for (from, to, comment) in comments(&rest[..end.start]) {
+            let (column, end_column) = (from as u32 + 1, to as u32 + 1);
+            let place = Place { source: SourceId(0), line, line_offset: start as u64, column, end_column };
+            found.push((place, comment));
+        }
+        start += end.next.max(1);
+        line += 1;
+    }
+    found
 }
 
 /// Reads a setup file.
 pub(crate) fn read_setup(path: &Path, speech: Speech) -> Result<Setup, Finding> {
+    parse_setup(path, &read_text(path, speech)?)
+}
+
+fn parse_setup(path: &Path, content: &str) -> Result<Setup, Finding> {
+    Setup::parse(content).map_err(|fault| {
+        let text = ProgramText::in_memory(path.display().to_string(), content.as_bytes());
+        invalid_setup(path, &fault).located(&text)
+    })
+}
+
+/// The text of a setup file.
+fn read_text(path: &Path, speech: Speech) -> Result<String, Finding> {
     let name = path.display().to_string();
     let unusable = |value: String| {
         let diagnostic = Diagnostic::error("setup-invalid").with("name", name.as_str()).with("value", value);
         Finding::new(name.as_str(), diagnostic).failed()
     };
-    let content = match fs::metadata(path) {
+    match fs::metadata(path) {
         Ok(metadata) if metadata.len() > SETUP_BYTES_MAX => {
-            return Err(unusable(format!("> {} MiB", SETUP_BYTES_MAX >> 20)));
+            Err(unusable(format!("> {} MiB", SETUP_BYTES_MAX >> 20)))
         }
-        Ok(_) => fs::read_to_string(path).map_err(|error| unusable(speech.system(&error)))?,
+        Ok(_) => fs::read_to_string(path).map_err(|error| unusable(speech.system(&error))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             let diagnostic = Diagnostic::error("setup-not-found").with("name", name.as_str());
-            return Err(Finding::new(name, diagnostic).failed());
+            Err(Finding::new(name.as_str(), diagnostic).failed())
         }
-        Err(error) => return Err(unusable(speech.system(&error))),
-    };
-    Setup::parse(&content).map_err(|fault| {
-        let text = ProgramText::in_memory(name.as_str(), content.as_bytes());
-        invalid_setup(path, &fault).located(&text)
-    })
+        Err(error) => Err(unusable(speech.system(&error))),
+    }
 }
 
 /// A setup file that makes no sense.

@@ -14,6 +14,7 @@ mod parameter_text;
 mod parameters;
 pub mod policy;
 mod setup;
+mod setup_comment;
 mod setup_text;
 mod signal;
 mod suggest;
@@ -35,6 +36,7 @@ pub use setup::{
     AxisPair, LinearAxis, Machine, MachineAxes, Mode, Offset, OffsetRow, RotaryAxis, Setup, SetupFault,
     ZeroRow, machine_names,
 };
+pub use setup_comment::setup_comment;
 pub use setup_text::setup_key_words;
 pub use signal::Signal;
 pub use suggest::nearest;

@@ -1,10 +1,11 @@
-//! The setup: which machine, offsets and parameters a program meets.
+//! The setup: which machine, offsets, parameters, stock and tools a program meets.
 
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use turnwright_geometry::Outline;
 
+use crate::setup_comment::lay_over;
 use crate::signal::Signal;
 use crate::{Axis, Chuck, ChuckOutlines, Parameters, Stock, Tailstock, Tool, ToolEntry, embedded, nearest};
 
@@ -426,6 +427,31 @@ impl Setup {
             fault.line = line_of(text, &fault.message);
             fault
         })?;
+        Ok(setup)
+    }
+
+    /// Reads a setup file's text with what comments of the program lay over it; see
+    /// [`setup_comment`](crate::setup_comment).
+    ///
+    /// # Errors
+    /// As [`Setup::parse`]; for what comes from a comment the key and the reason.
+    pub fn with_comments(text: &str, comments: Vec<toml::Table>) -> Result<Self, SetupFault> {
+        if comments.is_empty() {
+            return Self::parse(text);
+        }
+        let read = |error: toml::de::Error| SetupFault { message: with_suggestion(error.message()), line: 0 };
+        let Ok(mut table) = toml::from_str::<toml::Table>(text) else { return Self::parse(text) };
+        // Faults of the file alone have their line; but a comment may give what the file leaves out.
+        let of_file = toml::from_str::<Self>(text);
+        if of_file.is_err() {
+            return Self::parse(text);
+        }
+        comments.into_iter().for_each(|comment| lay_over(&mut table, comment));
+        let setup: Self = table.try_into().map_err(read)?;
+        if let Some(message) = setup.skip.iter().find_map(Signal::fault) {
+            return Err(SetupFault { message: message.to_string(), line: 0 });
+        }
+        setup.check()?;
         Ok(setup)
     }
 

@@ -8,6 +8,7 @@ mod generate;
 mod passes;
 mod plot;
 mod run;
+mod setup;
 mod trace;
 
 use crate::arguments::{Arguments, Command, Format, LookupFormat};
@@ -24,6 +25,7 @@ pub(crate) fn run(arguments: &Arguments, printer: &Printer) -> Result<Status, Fa
         Command::Explain(options) => explain::run(options, printer),
         Command::Controls(options) => controls::run(options, printer),
         Command::Data(options) => data::run(options, printer),
+        Command::Setup(options) => setup::run(options, printer),
         Command::Completions(options) => generate::completions(options),
         Command::Man(options) => generate::man(options),
     }
@@ -36,6 +38,7 @@ pub(crate) fn format(arguments: &Arguments) -> Format {
         Command::Run(options) => options.format,
         Command::Check(options) => options.format,
         Command::Plot(options) => options.format,
+        Command::Setup(options) => options.format,
         Command::Explain(options) => lookup(options.format),
         Command::Controls(options) => lookup(options.format),
         Command::Data(options) => lookup(options.format),

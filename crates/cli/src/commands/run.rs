@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use turnwright_export::formats::jsonl;
 use turnwright_export::formats::svg::{PictureOptions, write_svg};
+use turnwright_verify::Inference;
 
 use super::plot::paint;
 use super::trace::{BUFFER_BYTES, write_alarm, write_json};
@@ -50,10 +51,12 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         options.out.as_deref().map(|folder| OutFolder::create(folder, &session, speech)).transpose()?;
 
     let mut passes = folder.is_some().then(|| Passes::new(&execution));
+    let mut inference = Inference::new(execution.interpreter().position());
     let mut progress = Progress::new(&text, printer);
     let decimals = execution.interpreter().decimals();
     while let Some(command) = execution.next_command() {
         measure.add(&command);
+        inference.add(&command);
         if let Some(folder) = &mut folder {
             write_json(&mut folder.buffer, &command, decimals, &execution);
             folder.pour(BUFFER_BYTES)?;
@@ -65,6 +68,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     }
     progress.finish();
 
+    let inferred = inference.finish(&session.setup);
     let findings = execution.findings();
     let status = findings.iter().map(Finding::status).max().unwrap_or(Status::Clean);
     let blocks = execution.interpreter().blocks_run();
@@ -78,6 +82,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         measure,
         passes: passes.map(Passes::finish).unwrap_or_default(),
         decimals,
+        assumptions: inferred.assumptions,
         blocks,
         stopped_at,
         written: Vec::new(),

@@ -1,6 +1,6 @@
 //! The report of a run on a terminal.
 
-use super::{RunReport, TIME_PARTS, estimates, operation_name};
+use super::{RunReport, TIME_PARTS, assumption_text, estimates, operation_name};
 use crate::render::clean;
 use crate::speech::Speech;
 use crate::table::{Side, Table, facts, heading};
@@ -38,6 +38,12 @@ impl RunReport {
         out.push('\n');
         for (_, sentence) in estimates(speech) {
             out.push_str(&format!("  - {sentence}\n"));
+        }
+        if !self.assumptions.is_empty() {
+            out.push_str(&format!("\n{}\n", heading(speech.get("assumed"))));
+            for assumption in &self.assumptions {
+                out.push_str(&format!("  - {}\n", assumption_text(assumption, speech)));
+            }
         }
         if !self.written.is_empty() {
             out.push_str(&format!("\n{}\n", heading(speech.get("written"))));

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use turnwright_motion::OperationKind;
 
-use super::{RunReport, TIME_PARTS, estimates, operation_name};
+use super::{RunReport, TIME_PARTS, assumption_text, estimates, operation_name};
 use crate::environment::ProgramText;
 use crate::speech::Speech;
 
@@ -35,8 +35,24 @@ impl RunReport {
             "spindle_rpm": self.measure.summary.rpm().map(|rpm| json!({ "min": rpm.min, "max": rpm.max })),
             "time": self.time_json(),
             "estimates": estimates,
+            "assumptions": self.assumptions_json(speech),
             "files": self.written,
         })
+    }
+
+    fn assumptions_json(&self, speech: Speech) -> Vec<Value> {
+        let assumptions = self.assumptions.iter();
+        assumptions
+            .map(|one| {
+                json!({
+                    "section": one.section,
+                    "setting": one.key,
+                    "key": one.words,
+                    "line": one.line,
+                    "text": assumption_text(one, speech),
+                })
+            })
+            .collect()
     }
 
     fn operations_json(&self, speech: Speech) -> Vec<Value> {

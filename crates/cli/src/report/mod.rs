@@ -6,10 +6,12 @@ mod page;
 
 use turnwright_canon::Command;
 use turnwright_control::{CodeSystem, Control, Language, Machine, Parameters};
+use turnwright_diagnostics::Argument;
 use turnwright_export::passes::Cycle;
 use turnwright_export::path::PathRecorder;
 use turnwright_motion::{Clock, Kind, MachineRates, Operation, OperationKind, RapidSurfaceSpeed, Summary};
 use turnwright_units::{Length, Position, Rpm, WorkTip, write_millimetres};
+use turnwright_verify::Assumption;
 
 use crate::finding::Finding;
 use crate::session::Session;
@@ -96,6 +98,8 @@ pub(crate) struct RunReport {
     pub(crate) passes: (Vec<Cycle>, u64),
     /// Decimal places of the least increment.
     pub(crate) decimals: u8,
+    /// What was assumed of stock and tools.
+    pub(crate) assumptions: Vec<Assumption>,
     /// Blocks executed.
     pub(crate) blocks: u64,
     /// The line of the alarm that ended the program.
@@ -168,6 +172,29 @@ pub(crate) const fn picture_language(language: Language) -> turnwright_export::L
     match language {
         Language::English => turnwright_export::Language::English,
         Language::Chinese => turnwright_export::Language::Chinese,
+    }
+}
+
+/// What was assumed, in a sentence.
+pub(crate) fn assumption_text(assumption: &Assumption, speech: Speech) -> String {
+    let values: Vec<(&str, String)> = assumption
+        .arguments
+        .iter()
+        .map(|(name, value)| {
+            let value = match value {
+                Argument::Text(text) => text.to_string(),
+                Argument::Integer(number) => number.to_string(),
+                Argument::Length(length) => length.to_string(),
+                Argument::Function(key) => key.to_string(),
+            };
+            (*name, value)
+        })
+        .collect();
+    let values: Vec<(&str, &str)> = values.iter().map(|(name, value)| (*name, value.as_str())).collect();
+    let text = speech.fill(assumption.words, &values);
+    match assumption.line {
+        Some(line) => speech.fill("assumed-at-line", &[("text", &text), ("line", &line.to_string())]),
+        None => text,
     }
 }
 

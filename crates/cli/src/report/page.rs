@@ -9,7 +9,7 @@ use turnwright_export::passes::Cycle;
 use turnwright_export::path::PathRecorder;
 
 use super::human::rpm_text;
-use super::{RunReport, TIME_PARTS, estimates, operation_name, picture_language};
+use super::{RunReport, TIME_PARTS, assumption_text, estimates, operation_name, picture_language};
 use crate::environment::ProgramText;
 use crate::finding::{Finding, decode};
 use crate::passes::setting_name;
@@ -35,8 +35,11 @@ impl RunReport {
             }));
         }
         let [estimated_note_en, estimated_note_zh] = SPEECHES.map(|speech| {
-            let sentences: Vec<String> = estimates(speech).map(|(_, sentence)| sentence).collect();
-            sentences.join(if speech.language == BOTH[0] { " " } else { "" })
+            let mut sentences: Vec<String> = estimates(speech).map(|(_, sentence)| sentence).collect();
+            let (space, stop) = if speech.language == BOTH[0] { (" ", ".") } else { ("", "。") };
+            let assumed = self.assumptions.iter().map(|one| assumption_text(one, speech) + stop);
+            sentences.extend(assumed);
+            sentences.join(space)
         });
         let (cycles, dropped) = mem::take(&mut self.passes);
         if dropped > 0 {

@@ -259,7 +259,11 @@ impl ToolEntry {
         let tip = self.tip.or(offset_nose.map(|(_, tip)| tip).filter(|tip| *tip > 0));
         let tip = tip.unwrap_or_else(|| usual_tip(kind, side, hand));
         let hand = hand.unwrap_or(if matches!(tip, 1 | 4) { Hand::Left } else { Hand::Right });
-        let stance = stance(tip, side, hand)?;
+        let stance = match kind {
+            // On the spindle axis there is no side to stand on.
+            ToolKind::Drilling | ToolKind::Tapping => stance(7, ToolSide::Outside, Hand::Neutral)?,
+            _ => stance(tip, side, hand)?,
+        };
         let drawing = Drawing { entry: self, kind, side, nose_mm, stance, insert, holder };
         let (cutting, body) = drawing.outlines()?;
         let width_mm = match kind {
@@ -501,6 +505,16 @@ impl Drawing<'_> {
         let body = shape::sleeve(diameter, length).map_err(no_outline("length_mm"))?;
         Ok((cutting, Some(body)))
     }
+}
+
+/// Whether a word is the designation of an insert.
+pub(crate) fn is_insert(word: &str) -> bool {
+    designation::insert(word).is_ok()
+}
+
+/// Whether a word is the designation of a holder.
+pub(crate) fn is_holder(word: &str) -> bool {
+    designation::holder(word).is_ok()
 }
 
 #[cfg(test)]

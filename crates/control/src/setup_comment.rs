@@ -1,0 +1,241 @@
+//! A setup written into the program, in comments that no control minds.
+//!
+//! ```text
+//! (SETUP STOCK D50 L80 FACE1)            also BORE20
+//! (SETUP CHUCK GRIP20 D200)              also INSIDE, JAW35, HEIGHT40, Z-60, RPM3000
+//! (SETUP TAILSTOCK Z-4)                  also ANGLE60, D25, L60, QUILL70
+//! (SETUP TOOL 1 CNMG120408 PCLNR2525M12 R0.8 TIP3)
+//! (SETUP TOOL 2 GROOVING W3 R0.2)        also CUT-OFF, THREADING, DRILLING D20, INSIDE, FACE, LEFT, FRONT …
+//! ```
+//!
+//! Letters may be small, a value may stand behind a blank or `=`, items may be parted by commas. Each item is a key of
+//! the setup file in short; what a comment says counts before what the file says. A comment that begins with `SETUP`
+//! and cannot be read is refused.
+
+use toml::{Table, Value};
+
+use crate::nearest;
+use crate::tooling::{is_holder, is_insert};
+
+/// Short names of the keys of a section.
+type Keys = &'static [(&'static str, &'static str)];
+
+const STOCK: Keys = &[
+    ("D", "diameter_mm"),
+    ("DIAMETER", "diameter_mm"),
+    ("L", "length_mm"),
+    ("LENGTH", "length_mm"),
+    ("BORE", "bore_mm"),
+    ("FACE", "face_mm"),
+];
+
+const CHUCK: Keys = &[
+    ("GRIP", "grip_mm"),
+    ("Z", "jaw_z_mm"),
+    ("JAW", "jaw_length_mm"),
+    ("HEIGHT", "jaw_height_mm"),
+    ("D", "diameter_mm"),
+    ("L", "length_mm"),
+    ("RPM", "rpm_max"),
+];
+
+const TAILSTOCK: Keys = &[
+    ("Z", "point_z_mm"),
+    ("ANGLE", "point_angle_deg"),
+    ("D", "centre_mm"),
+    ("L", "centre_length_mm"),
+    ("QUILL", "quill_mm"),
+];
+
+const TOOL: Keys = &[
+    ("R", "nose_radius_mm"),
+    ("TIP", "tip"),
+    ("W", "width_mm"),
+    ("WIDTH", "width_mm"),
+    ("REACH", "reach_mm"),
+    ("D", "diameter_mm"),
+    ("POINT", "point_angle_deg"),
+    ("THREAD", "thread_angle_deg"),
+    ("ENTERING", "entering_angle_deg"),
+    ("L", "length_mm"),
+    ("SHANK", "shank_mm"),
+];
+
+/// Words that are a value by themselves: the word, its key, the value.
+const TOOL_WORDS: &[(&str, &str, &str)] = &[
+    ("TURNING", "kind", "turning"),
+    ("GROOVING", "kind", "grooving"),
+    ("CUT-OFF", "kind", "cut-off"),
+    ("THREADING", "kind", "threading"),
+    ("DRILLING", "kind", "drilling"),
+    ("TAPPING", "kind", "tapping"),
+    ("OUTSIDE", "side", "outside"),
+    ("INSIDE", "side", "inside"),
+    ("FACE", "side", "face"),
+    ("RIGHT", "hand", "right"),
+    ("LEFT", "hand", "left"),
+    ("NEUTRAL", "hand", "neutral"),
+    ("REAR", "post", "rear"),
+    ("FRONT", "post", "front"),
+];
+
+const CHUCK_WORDS: &[(&str, &str, &str)] = &[("OUTSIDE", "grip", "outside"), ("INSIDE", "grip", "inside")];
+
+/// Values that count: no point in them.
+const WHOLE: [&str; 2] = ["tip", "rpm_max"];
+
+/// A comment (what is between the brackets) as a piece of a setup file; `None` when it is a remark like any other.
+///
+/// # Errors
+/// What of it cannot be read, in words.
+pub fn setup_comment(comment: &str) -> Option<Result<Table, String>> {
+    let comment = comment.trim().to_ascii_uppercase();
+    let rest = comment.strip_prefix("SETUP")?;
+    // SETUPS and SETUP-SHEET are words of their own.
+    let is_one_word = rest.starts_with([' ', ':', '=', '\t']);
+    is_one_word.then(|| read(rest))
+}
+
+fn read(text: &str) -> Result<Table, String> {
+    let mut items = text.split([' ', '\t', ',', ':', '=']).filter(|item| !item.is_empty()).peekable();
+    let section = items.next().ok_or("SETUP is followed by STOCK, CHUCK, TAILSTOCK or TOOL")?;
+    let (keys, words): (Keys, &[_]) = match section {
+        "STOCK" => (STOCK, &[]),
+        "CHUCK" => (CHUCK, CHUCK_WORDS),
+        "TAILSTOCK" => (TAILSTOCK, &[]),
+        "TOOL" => (TOOL, TOOL_WORDS),
+        other => {
+            let near = nearest(other, ["STOCK", "CHUCK", "TAILSTOCK", "TOOL"]);
+            let hint = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+            return Err(format!("{other} is none of STOCK, CHUCK, TAILSTOCK and TOOL{hint}"));
+        }
+    };
+    let station = if section == "TOOL" {
+        let station = items.next().map(|item| item.trim_start_matches('T'));
+        let station = station.and_then(|item| item.parse::<u32>().ok());
+        Some(station.ok_or("TOOL is followed by the number of the turret station")?)
+    } else {
+        None
+    };
+    let mut table = Table::new();
+    while let Some(item) = items.next() {
+        let letters = item.find(|c: char| !c.is_ascii_alphabetic() && c != '-').unwrap_or(item.len());
+        let letters = item[..letters].trim_end_matches('-').len();
+        let (name, number) = item.split_at(letters);
+        if let Some((_, key)) = keys.iter().find(|(short, _)| *short == name) {
+            let is_word = number.is_empty() && words.iter().any(|(word, ..)| *word == item);
+            let number =
+                if number.is_empty() && !is_word { items.next().unwrap_or_default() } else { number };
+            if !is_word {
+                table.insert((*key).to_string(), value(key, number).ok_or_else(|| no_number(item, number))?);
+                continue;
+            }
+        }
+        if let Some((_, key, value)) = words.iter().find(|(word, ..)| *word == item) {
+            table.insert((*key).to_string(), Value::String((*value).to_string()));
+        } else if section == "TOOL" && is_insert(item) {
+            table.insert("insert".to_string(), Value::String(item.to_string()));
+        } else if section == "TOOL" && is_holder(item) {
+            table.insert("holder".to_string(), Value::String(item.to_string()));
+        } else {
+            let known = keys.iter().map(|(short, _)| *short).chain(words.iter().map(|(word, ..)| *word));
+            let near = nearest(name, known.clone());
+            let hint = near.map_or_else(
+                || format!("; known are {}", known.collect::<Vec<_>>().join(" ")),
+                |near| format!("; did you mean {near}?"),
+            );
+            return Err(format!("{item} is not known here{hint}"));
+        }
+    }
+    if let Some(station) = station {
+        table = Table::from_iter([(station.to_string(), Value::Table(table))]);
+    }
+    let section = if station.is_some() { "tools".to_string() } else { section.to_ascii_lowercase() };
+    Ok(Table::from_iter([(section, Value::Table(table))]))
+}
+
+fn value(key: &str, number: &str) -> Option<Value> {
+    if WHOLE.contains(&key) {
+        number.parse().ok().map(Value::Integer)
+    } else {
+        number.parse::<f64>().ok().filter(|number| number.is_finite()).map(Value::Float)
+    }
+}
+
+fn no_number(item: &str, number: &str) -> String {
+    format!("{item} needs a number, not {number:?}")
+}
+
+/// Lays one piece of a setup over another, key by key.
+pub(crate) fn lay_over(under: &mut Table, over: Table) {
+    for (key, value) in over {
+        match (under.get_mut(&key).and_then(Value::as_table_mut), value) {
+            (Some(under), Value::Table(over)) => lay_over(under, over),
+            (_, value) => {
+                under.insert(key, value);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Setup, ToolKind, ToolSide};
+
+    fn pieces(comments: &[&str]) -> Vec<Table> {
+        let read =
+            |comment: &&str| setup_comment(comment).expect(comment).unwrap_or_else(|why| panic!("{why}"));
+        comments.iter().map(read).collect()
+    }
+
+    #[test]
+    fn comments_are_keys_of_the_setup_file_in_short() {
+        let comments = pieces(&[
+            "SETUP STOCK D50 L80.5 FACE = 1",
+            "setup chuck grip 25, d200 inside rpm3000",
+            "SETUP TOOL 1 CNMG120408 PCLNR2525M12 R0.8 TIP3",
+            "Setup Tool T02 grooving w3 inside",
+            "SETUP TOOL 3 DRILLING D20 POINT118",
+            "SETUP TAILSTOCK Z-4",
+            "SETUP STOCK BORE20",
+        ]);
+        let setup = Setup::with_comments("[stock]\ndiameter_mm = 40\n", comments).expect("a setup");
+        let stock = setup.stock.clone().expect("stock");
+        assert_eq!(
+            (stock.diameter_mm, stock.length_mm, stock.bore_mm, stock.face_mm),
+            (Some(50.0), Some(80.5), Some(20.0), 1.0)
+        );
+        assert_eq!(setup.chuck.as_ref().and_then(|chuck| chuck.rpm_max), Some(3000));
+        let tools = setup.tools().expect("tools");
+        assert_eq!((tools[&1].tip, tools[&1].nose_radius_mm), (3, 0.8));
+        assert_eq!(
+            (tools[&2].kind, tools[&2].side, tools[&2].width_mm),
+            (ToolKind::Grooving, ToolSide::Inside, Some(3.0))
+        );
+        assert_eq!(tools[&3].kind, ToolKind::Drilling);
+        assert_eq!(setup.tailstock.and_then(|tailstock| tailstock.point_z_mm), Some(-4.0));
+    }
+
+    #[test]
+    fn other_remarks_are_left_alone_and_wrong_ones_refused() {
+        for remark in ["SETUPS", "SETUP", "SET UP", "ROUGHING", "SETUP-SHEET 4", ""] {
+            assert!(setup_comment(remark).is_none(), "{remark}");
+        }
+        for (comment, why) in [
+            ("SETUP STOK D50", "did you mean STOCK?"),
+            ("SETUP STOCK DIAMETR 50", "did you mean DIAMETER?"),
+            ("SETUP STOCK D", "needs a number"),
+            ("SETUP STOCK Dx", "did you mean D?"),
+            ("SETUP STOCK SEVENTY", "known are"),
+            ("SETUP STOCK D1e999", "needs a number"),
+            ("SETUP TOOL CNMG120408", "number of the turret station"),
+            ("SETUP TOOL 1 CNMG12", "not known here"),
+            ("SETUP TOOL 1 TIP3.5", "needs a number"),
+            ("SETUP : ", "followed by"),
+        ] {
+            let fault = setup_comment(comment).expect(comment).expect_err(comment);
+            assert!(fault.contains(why), "{comment}: {fault}");
+        }
+    }
+}

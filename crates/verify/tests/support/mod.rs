@@ -1,0 +1,52 @@
+//! Running a program text in memory, for tests.
+
+use turnwright_canon::Command;
+use turnwright_control::{Control, Setup};
+use turnwright_diagnostics::{Diagnostic, SourceId};
+use turnwright_interpreter::{Environment, Interpreter, Options, ReadFault, Step};
+use turnwright_units::{Position, WorkTip};
+
+struct Memory<'a>(&'a [u8]);
+
+impl Environment for Memory<'_> {
+    fn read(&mut self, _: SourceId, offset: u64, buffer: &mut [u8]) -> Result<usize, ReadFault> {
+        let rest = self.0.get(offset as usize..).unwrap_or(&[]);
+        let length = rest.len().min(buffer.len());
+        buffer[..length].copy_from_slice(&rest[..length]);
+        Ok(length)
+    }
+
+    fn skips(&self, _: u8) -> bool {
+        false
+    }
+}
+
+/// What a run gave.
+pub struct Run {
+    pub start: Position<WorkTip>,
+    pub commands: Vec<Command>,
+    pub alarm: Option<Diagnostic>,
+}
+
+/// Runs a program on a control with a setup.
+pub fn run(text: &str, control: &str, setup: &Setup) -> Run {
+    let mut control = Control::load(control).unwrap_or_else(|fault| panic!("{fault:?}"));
+    for (number, value) in setup.parameter_words() {
+        control.parameters.set(&number, &value).unwrap_or_else(|fault| panic!("{fault:?}"));
+    }
+    let options = Options { blocks_max: 100_000, idle_blocks_max: 100_000 };
+    let mut interpreter =
+        Interpreter::new(control, setup, SourceId(0), options).unwrap_or_else(|fault| panic!("{fault:?}"));
+    let mut run = Run { start: interpreter.position(), commands: Vec::new(), alarm: None };
+    loop {
+        match interpreter.step(&mut Memory(text.as_bytes())) {
+            Step::Emit(command) => run.commands.push(command),
+            Step::NeedSync(_) => {}
+            Step::Alarm(alarm) => {
+                run.alarm = Some(*alarm);
+                return run;
+            }
+            Step::End => return run,
+        }
+    }
+}
