@@ -24,6 +24,7 @@ use turnwright_export::formats::jsonl;
 use turnwright_geometry::{Point, sweep_rad};
 use turnwright_interpreter::{Environment, Interpreter, Options, ReadFault, Step};
 use turnwright_syntax::{Block, Tree, find_line_end, scan_block};
+use turnwright_units::{Position, WorkTip};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -120,24 +121,26 @@ fn interpreter(path: &Path) -> Result<(Interpreter, Texts), String> {
     Ok((interpreter, Texts(file)))
 }
 
-/// Interprets a file and adds up what came out: the number of moves.
+/// Interprets a file and adds up what came out: the number of moves, and the length of their way, which shows that
+/// both sides made the same ones.
 fn interpret(path: &Path) -> Result<u64, String> {
     let (mut interpreter, mut texts) = interpreter(path)?;
-    let mut from = Point::new(interpreter.position().x.to_mm(), interpreter.position().z.to_mm());
-    let (mut moves, mut length_mm) = (0u64, 0.0f64);
+    let in_nm = |place: Position<WorkTip>| Point::new(place.x.0.to_nm_float(), place.z.to_nm_float());
+    let mut from = in_nm(interpreter.position());
+    let (mut moves, mut length_nm) = (0u64, 0.0f64);
     loop {
         match interpreter.step(&mut texts) {
             Step::Emit(command) => {
-                let Some(to) = command.action.end_point() else { continue };
-                let to = Point::new(to.x.to_mm(), to.z.to_mm());
+                let Some(to) = command.action.end_point().map(in_nm) else { continue };
                 if moves > 0 {
-                    length_mm += match command.action {
+                    length_nm += match command.action {
                         Action::Feed { shape: Shape::Arc { turn, centre }, .. } => {
-                            let centre = Point::new(centre.x.to_mm(), centre.z.to_mm());
+                            let centre = in_nm(centre);
                             let clockwise = turn == turnwright_canon::Turn::Clockwise;
                             sweep_rad(from, to, centre, clockwise).abs() * centre.distance(from)
                         }
-                        _ => from.distance(to),
+                        // `hypot` would cost more than it tells here.
+                        _ => ((from.x - to.x).powi(2) + (from.z - to.z).powi(2)).sqrt(),
                     };
                 }
                 moves += 1;
@@ -148,7 +151,7 @@ fn interpret(path: &Path) -> Result<u64, String> {
             Step::End => break,
         }
     }
-    println!("{moves} moves, {length_mm:.4} mm");
+    println!("{moves} moves, {:.4} mm", length_nm / 1e6);
     Ok(moves)
 }
 

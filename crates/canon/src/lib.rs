@@ -69,8 +69,8 @@ pub enum Action {
         shape: Shape,
         /// Lead along the long axis at the start.
         lead: Lead,
-        /// Lead at the end, when it varies: it changes evenly with the revolutions.
-        lead_end: Option<Lead>,
+        /// Lead at the end, when it varies: it changes evenly with the revolutions. Boxed, as few threads do that.
+        lead_end: Option<Box<Lead>>,
         /// Spindle angle at which the thread starts: of a chain, its first move.
         start_angle: Angle,
         /// The thread goes on from the move before without a stop; otherwise the move waits until the spindle

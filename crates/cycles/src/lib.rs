@@ -105,6 +105,30 @@ impl Context {
     }
 }
 
+/// A straight move before it is made. Cycles of many moves look at it first and build the [`CycleMove`] once, in
+/// the place that it is given out from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Leg {
+    pub(crate) to: Position<WorkTip>,
+    /// At rapid traverse, otherwise at the feed of the cycle.
+    pub(crate) is_rapid: bool,
+    pub(crate) phase: Phase,
+    pub(crate) pass: u32,
+    pub(crate) element: Option<u32>,
+}
+
+impl Leg {
+    #[inline]
+    pub(crate) const fn make(self, context: &Context) -> CycleMove {
+        let Self { to, is_rapid, phase, pass, element } = self;
+        if is_rapid {
+            CycleMove { action: context.rapid(to), phase, pass, element }
+        } else {
+            CycleMove { action: context.line(to), phase, pass, element }
+        }
+    }
+}
+
 /// Knows where the tool stands, and so which moves have no length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tool {
@@ -119,6 +143,14 @@ impl Tool {
     /// Where it stands.
     pub(crate) const fn at(&self) -> Position<WorkTip> {
         self.at
+    }
+
+    /// Follows a straight move; false when it goes nowhere.
+    #[inline]
+    pub(crate) fn goes_to(&mut self, to: Position<WorkTip>) -> bool {
+        let goes = to != self.at;
+        self.at = to;
+        goes
     }
 
     /// Follows the move; false when it goes nowhere. An arc back to its start is a full circle.

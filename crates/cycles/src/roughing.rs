@@ -12,12 +12,12 @@
 //! Not here: pockets (type II), nose radius compensation, the single finishing pass.
 //! Source: rough turning and facing, type I, chapter 3 of the cycles, and rows 1 to 6, 9 and 28 of its chapter 13.
 
-use turnwright_canon::{Action, Phase};
+use turnwright_canon::Phase;
 use turnwright_units::{Displacement, Length, Position, Radius, WorkTip};
 
 use crate::figure::{LeadIn, Piece, cut_sign, lead_in, monotony_fault_of, profile, snap};
 use crate::plane::{Plane, in_range};
-use crate::{Context, CutAlong, CycleMove, Figure, Misuse, Tolerance, Tool, pass_number};
+use crate::{Context, CutAlong, CycleMove, Figure, Leg, Misuse, Tolerance, Tool, pass_number};
 
 /// A level that lies exactly on a stretch of the figure parallel to the cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -210,74 +210,83 @@ impl Roughing {
         levels.saturating_mul(4).saturating_add(self.figure.elements.len() as u64 + 3)
     }
 
-    fn advance(&mut self) -> Option<CycleMove> {
-        match self.next {
-            Next::Approach => Some(self.approach()),
-            Next::Infeed => Some(self.infeed()),
-            Next::Cut => Some(self.cut()),
-            Next::Escape => Some(self.escape()),
-            Next::Return => Some(self.back()),
-            Next::LastInfeed => Some(self.last_infeed()),
-            Next::Contour(index) => Some(self.contour(index)),
-            Next::Home => Some(self.home()),
-            Next::Done => None,
-        }
+    #[inline]
+    fn leg(&mut self) -> Option<Leg> {
+        Some(match self.next {
+            Next::Approach => self.approach(),
+            Next::Infeed => self.infeed(),
+            Next::Cut => self.cut(),
+            Next::Escape => self.escape(),
+            Next::Return => self.back(),
+            Next::LastInfeed => self.last_infeed(),
+            Next::Home => self.home(),
+            Next::Contour(_) | Next::Done => return None,
+        })
     }
 
-    fn approach(&mut self) -> CycleMove {
-        let to = self.plane.place(self.origin.0, self.origin.1);
+    fn approach(&mut self) -> Leg {
         self.next = self.after_level();
-        self.tell(self.request.context.rapid(to), Phase::Approach, None)
+        let to = self.plane.place(self.origin.0, self.origin.1);
+        Leg { to, is_rapid: true, phase: Phase::Approach, pass: 0, element: None }
     }
 
-    fn infeed(&mut self) -> CycleMove {
+    fn infeed(&mut self) -> Leg {
         self.next = Next::Cut;
-        self.tell(self.down(self.plane.place(self.level_u(), self.origin.1)), Phase::Infeed, None)
+        let to = self.plane.place(self.level_u(), self.origin.1);
+        self.tell(to, self.lead.rapid, Phase::Infeed, None)
     }
 
-    fn cut(&mut self) -> CycleMove {
+    fn cut(&mut self) -> Leg {
         self.next = Next::Escape;
         let (end, element) = self.end_of_cut();
         self.cut_end = end;
-        let to = self.plane.place_computed(self.level_u(), end);
-        self.tell(self.request.context.line(to), Phase::Cut, element)
+        self.tell(self.plane.place_computed(self.level_u(), end), false, Phase::Cut, element)
     }
 
-    fn escape(&mut self) -> CycleMove {
+    fn escape(&mut self) -> Leg {
         self.next = Next::Return;
         let back = self.cut_end - (self.forward * self.request.escape.nm()) as f64;
         let to = self.plane.place_computed(self.escaped_u(), back);
-        let action = match self.request.escape_speed {
-            EscapeSpeed::Feed => self.request.context.line(to),
-            EscapeSpeed::Rapid => self.request.context.rapid(to),
-        };
-        self.tell(action, Phase::Escape, None)
+        self.tell(to, self.request.escape_speed == EscapeSpeed::Rapid, Phase::Escape, None)
     }
 
-    fn back(&mut self) -> CycleMove {
+    fn back(&mut self) -> Leg {
         let to = self.plane.place(self.escaped_u(), self.origin.1);
-        let step = self.tell(self.request.context.rapid(to), Phase::Return, None);
+        let leg = self.tell(to, true, Phase::Return, None);
         self.next = self.after_level();
-        step
+        leg
     }
 
-    fn last_infeed(&mut self) -> CycleMove {
+    fn last_infeed(&mut self) -> Leg {
         self.next = Next::Contour(self.lead.elements);
         let last = self.lead.elements - 1;
-        let action = self.down(self.figure.end(last, self.shift));
-        self.tell(action, Phase::Infeed, Some(pass_number(last as u64)))
+        let to = self.figure.end(last, self.shift);
+        self.tell(to, self.lead.rapid, Phase::Infeed, Some(pass_number(last as u64)))
     }
 
-    fn contour(&mut self, index: usize) -> CycleMove {
-        let last = index + 1 >= self.figure.elements.len();
-        self.next = if last { Next::Home } else { Next::Contour(index + 1) };
-        let action = self.figure.cut(index, self.shift, &self.request.context);
-        self.tell(action, Phase::Contour, Some(pass_number(index as u64)))
-    }
-
-    fn home(&mut self) -> CycleMove {
+    fn home(&mut self) -> Leg {
         self.next = Next::Done;
-        self.tell(self.request.context.rapid(self.request.context.start), Phase::Home, None)
+        self.tell(self.request.context.start, true, Phase::Home, None)
+    }
+
+    /// The next element of the contour pass; those without length are left out.
+    fn contour(&mut self, from: usize) -> Option<CycleMove> {
+        let mut index = from;
+        while index < self.figure.elements.len() {
+            let step = CycleMove {
+                action: self.figure.cut(index, self.shift, &self.request.context),
+                phase: Phase::Contour,
+                pass: self.pass(),
+                element: Some(pass_number(index as u64)),
+            };
+            index += 1;
+            if self.tool.goes(&step) {
+                self.next = Next::Contour(index);
+                return Some(step);
+            }
+        }
+        self.next = Next::Home;
+        None
     }
 
     /// Counts on to the next level and says what comes first there.
@@ -306,11 +315,6 @@ impl Roughing {
         self.level_u().saturating_sub(self.lead.depth_sign * self.request.escape.nm())
     }
 
-    /// Down to a level, the way the approach of the figure goes down.
-    fn down(&self, to: Position<WorkTip>) -> Action {
-        if self.lead.rapid { self.request.context.rapid(to) } else { self.request.context.line(to) }
-    }
-
     /// Where the present level meets the figure, and the element it meets; never behind the start.
     fn end_of_cut(&self) -> (f64, Option<u32>) {
         let (end, element) = self.profile.end_of_level(self.level_depth(), self.request.coincident);
@@ -320,9 +324,12 @@ impl Roughing {
         (end, element)
     }
 
-    fn tell(&self, action: Action, phase: Phase, element: Option<u32>) -> CycleMove {
-        let pass = if phase == Phase::Approach { 0 } else { self.level };
-        CycleMove { action, phase, pass: pass_number(u64::try_from(pass).unwrap_or(0)), element }
+    fn tell(&self, to: Position<WorkTip>, is_rapid: bool, phase: Phase, element: Option<u32>) -> Leg {
+        Leg { to, is_rapid, phase, pass: self.pass(), element }
+    }
+
+    fn pass(&self) -> u32 {
+        pass_number(u64::try_from(self.level).unwrap_or(0))
     }
 }
 
@@ -331,9 +338,16 @@ impl Iterator for Roughing {
 
     fn next(&mut self) -> Option<CycleMove> {
         loop {
-            let step = self.advance()?;
-            if self.tool.goes(&step) {
-                return Some(step);
+            if let Some(leg) = self.leg() {
+                if self.tool.goes_to(leg.to) {
+                    return Some(leg.make(&self.request.context));
+                }
+            } else if let Next::Contour(index) = self.next {
+                if let Some(step) = self.contour(index) {
+                    return Some(step);
+                }
+            } else {
+                return None;
             }
         }
     }
@@ -385,7 +399,7 @@ impl Profile {
 
 #[cfg(test)]
 mod tests {
-    use turnwright_canon::RapidPath;
+    use turnwright_canon::{Action, RapidPath};
     use turnwright_units::{Feed, FeedPerRevolution, LeastIncrement};
 
     use super::*;

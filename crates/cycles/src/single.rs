@@ -10,7 +10,7 @@ use turnwright_canon::{Action, Phase};
 use turnwright_units::{Angle, FeedPerMinute, Lead, Length, Position, WorkTip};
 
 use crate::plane::{Plane, in_range};
-use crate::threading::{LineWords, Part, ThreadLine};
+use crate::threading::{LineWords, Part, ThreadLeg, ThreadLine};
 use crate::{Context, CutAlong, CycleMove, Misuse, Tool};
 
 /// The axis that a box cycle moves first.
@@ -185,15 +185,14 @@ impl ThreadOnce {
         self.line.shortened()
     }
 
-    fn advance(&mut self) -> Option<CycleMove> {
-        let (action, phase) = self.line.step(self.part, 0.0, 0.0)?;
-        let step = CycleMove { action, phase, pass: self.start + 1, element: None };
+    fn leg(&mut self) -> Option<ThreadLeg> {
+        let leg = self.line.leg(self.part, 0.0, 0.0, self.start + 1)?;
         self.part = self.part.after();
         if self.part == Part::Done && self.start + 1 < self.starts {
             (self.part, self.start) = (Part::Infeed, self.start + 1);
             self.line.start_angle = angle_of_start(self.first_angle, self.start, self.starts);
         }
-        Some(step)
+        Some(leg)
     }
 }
 
@@ -202,9 +201,9 @@ impl Iterator for ThreadOnce {
 
     fn next(&mut self) -> Option<CycleMove> {
         loop {
-            let step = self.advance()?;
-            if self.tool.goes(&step) {
-                return Some(step);
+            let leg = self.leg()?;
+            if self.tool.goes_to(leg.to) {
+                return Some(self.line.make(leg));
             }
         }
     }

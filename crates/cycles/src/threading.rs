@@ -302,17 +302,18 @@ impl Threading {
         self.line.shortened()
     }
 
-    fn advance(&mut self) -> Option<CycleMove> {
+    /// What comes next, and moves on to what follows it.
+    #[inline]
+    fn leg(&mut self) -> Option<ThreadLeg> {
         let way = self.infeed.way(self.depth_number, self.depth, self.height);
-        let (action, phase) = self.line.step(self.part, self.height - self.depth, self.flank * way)?;
         let passes_before = (self.depth_number - 1).saturating_mul(u64::from(self.starts));
-        let pass = passes_before.saturating_add(u64::from(self.start) + 1);
-        let step = CycleMove { action, phase, pass: pass_number(pass), element: None };
+        let pass = pass_number(passes_before.saturating_add(u64::from(self.start) + 1));
+        let leg = self.line.leg(self.part, self.height - self.depth, self.flank * way, pass)?;
         self.part = self.part.after();
         if self.part == Part::Done {
             self.next_pass();
         }
-        Some(step)
+        Some(leg)
     }
 
     /// The next start at this depth, else the next depth.
@@ -335,9 +336,9 @@ impl Iterator for Threading {
 
     fn next(&mut self) -> Option<CycleMove> {
         loop {
-            let step = self.advance()?;
-            if self.tool.goes(&step) {
-                return Some(step);
+            let leg = self.leg()?;
+            if self.tool.goes_to(leg.to) {
+                return Some(self.line.make(leg));
             }
         }
     }
@@ -364,6 +365,17 @@ impl Part {
             Self::Home | Self::Done => Self::Done,
         }
     }
+}
+
+/// A move of a thread pass before it is made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ThreadLeg {
+    part: Part,
+    pub(crate) to: Position<WorkTip>,
+    pass: u32,
+    start_angle: Angle,
+    /// The run-out follows a thread in the same pass.
+    follows: bool,
 }
 
 /// The words that every thread has.
@@ -457,53 +469,57 @@ impl ThreadLine {
     }
 
     /// One part of the pass that leaves `stock` on the root and starts `advance` further along Z.
-    pub(crate) fn step(&self, part: Part, stock: f64, advance: f64) -> Option<(Action, Phase)> {
-        let context = &self.context;
+    #[inline]
+    pub(crate) fn leg(&self, part: Part, stock: f64, advance: f64, pass: u32) -> Option<ThreadLeg> {
         let forward = self.length.signum();
+        let begin = self.end_v - self.length + forward * advance;
         let leave = self.end_v - forward * self.run_out;
-        Some(match part {
-            Part::Infeed => {
-                let begin = self.end_v - self.length + forward * advance;
-                (context.rapid(self.on_line(begin, stock)), Phase::Infeed)
-            }
-            Part::Thread => (self.threaded(self.on_line(leave, stock), self.lead, false), Phase::Thread),
+        let to = match part {
+            Part::Infeed => self.on_line(begin, stock),
+            Part::Thread => self.on_line(leave, stock),
             Part::Chamfer => {
                 let u = self.depth_axis(leave, stock) + self.outward * self.run_out * self.slope;
-                let follows = leave != self.end_v - self.length + forward * advance;
-                (
-                    self.threaded(
-                        self.plane.place_both_computed(u, self.end_v),
-                        self.run_out_lead(),
-                        follows,
-                    ),
-                    Phase::Chamfer,
-                )
+                self.plane.place_both_computed(u, self.end_v)
             }
             Part::Out => {
                 // The start as it is given, only the other axis rounded.
                 let end = self.plane.place_both_computed(self.end_u, self.end_v);
-                let start = context.start;
-                let to = if self.plane.depth_is_x {
+                let start = self.context.start;
+                if self.plane.depth_is_x {
                     Position::new(start.x, end.z)
                 } else {
                     Position::new(end.x, start.z)
-                };
-                let out = match self.pull_out_feed {
-                    Some(feed) => {
-                        Action::Feed { to, shape: Shape::Line, feed: Feed::PerMinute(feed), others: None }
-                    }
-                    None => context.rapid(to),
-                };
-                (out, Phase::Out)
+                }
             }
-            Part::Home => (context.rapid(context.start), Phase::Home),
+            Part::Home => self.context.start,
             Part::Done => return None,
-        })
+        };
+        Some(ThreadLeg { part, to, pass, start_angle: self.start_angle, follows: leave != begin })
     }
 
-    const fn threaded(&self, to: Position<WorkTip>, lead: Lead, is_chained: bool) -> Action {
-        let start_angle = self.start_angle;
-        Action::Thread { to, shape: Shape::Line, lead, lead_end: None, start_angle, is_chained }
+    /// The move itself.
+    #[inline]
+    pub(crate) fn make(&self, leg: ThreadLeg) -> CycleMove {
+        let ThreadLeg { part, to, pass, start_angle, follows } = leg;
+        let threaded = |lead, is_chained, phase| CycleMove {
+            action: Action::Thread { to, shape: Shape::Line, lead, lead_end: None, start_angle, is_chained },
+            phase,
+            pass,
+            element: None,
+        };
+        let rapid = |phase| CycleMove { action: self.context.rapid(to), phase, pass, element: None };
+        match (part, self.pull_out_feed) {
+            (Part::Infeed, _) => rapid(Phase::Infeed),
+            (Part::Thread, _) => threaded(self.lead, false, Phase::Thread),
+            (Part::Chamfer, _) => threaded(self.run_out_lead(), follows, Phase::Chamfer),
+            (Part::Out, Some(feed)) => {
+                let feed = Feed::PerMinute(feed);
+                let action = Action::Feed { to, shape: Shape::Line, feed, others: None };
+                CycleMove { action, phase: Phase::Out, pass, element: None }
+            }
+            (Part::Out, None) => rapid(Phase::Out),
+            (Part::Home | Part::Done, _) => rapid(Phase::Home),
+        }
     }
 
     /// u of the line at v.

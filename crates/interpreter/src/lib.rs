@@ -41,6 +41,7 @@ mod parts;
 mod plain;
 mod plane;
 mod punch;
+mod queue;
 mod reading;
 mod report;
 mod reset;

@@ -1,6 +1,6 @@
 //! The step machine itself.
 
-use std::collections::{HashSet, VecDeque};
+use std::collections::HashSet;
 
 use turnwright_canon::{Command, CycleOrigin, OtherAxes, PathMode};
 use turnwright_control::{Control, Mode, Parameters, Setup, SetupFault};
@@ -28,6 +28,7 @@ use crate::modal::{Modal, Settings, SingleCycle, SpeedMode};
 use crate::moves::ActiveCycle;
 use crate::offsets::{OffsetInForce, OffsetTables};
 use crate::parts::Parts;
+use crate::queue::Queue;
 use crate::report::Alarm;
 use crate::spindle::MachineLimits;
 use crate::strokes::Strokes;
@@ -160,7 +161,7 @@ pub(crate) struct Core {
     pub(crate) indexes: Vec<(SourceId, ProgramIndex)>,
     pub(crate) cache: Cache,
     pub(crate) macros: Macros,
-    pub(crate) out: VecDeque<Command>,
+    pub(crate) out: Queue,
     /// End of the last move given out.
     pub(crate) tip: Position<WorkTip>,
     /// From there to the programmed place: a movement of the tool offset that is still to be made.
@@ -204,7 +205,9 @@ pub(crate) struct Core {
     pub(crate) idle_blocks: u64,
     /// The moves given out so far are done: the caller was told to wait for them.
     pub(crate) moves_done: bool,
+    /// Moves of cycles given out, and how many of them end the cycle in work with an error.
     pub(crate) cycle_moves: u64,
+    pub(crate) cycle_moves_end: u64,
     pub(crate) has_started: bool,
     /// Nothing in force looks at blocks that are nothing but a path: see [`plain`](crate::plain).
     pub(crate) is_plain: bool,
@@ -331,7 +334,7 @@ impl Interpreter {
             indexes: Vec::new(),
             cache: Cache::default(),
             macros,
-            out: VecDeque::new(),
+            out: Queue::default(),
             active: None,
             waiting: None,
             in_cycle: None,
@@ -353,6 +356,7 @@ impl Interpreter {
             idle_blocks: 0,
             moves_done: true,
             cycle_moves: 0,
+            cycle_moves_end: 0,
             has_started: false,
             is_plain: false,
             expects_program_number: true,
@@ -426,14 +430,16 @@ impl Interpreter {
     #[inline]
     pub fn step(&mut self, environment: &mut dyn Environment) -> Step {
         loop {
-            if let Some(mut command) = self.core.out.pop_front() {
-                if !self.core.out.is_empty() || self.core.macros.state.single_block != 0 {
-                    command.origin.runs_on |= self.core.runs_on_behind(&command);
-                }
+            if let Some(command) = self.core.out.front() {
                 if command.action.end_point().is_some() {
                     self.core.idle_blocks = 0;
                 }
+                if self.core.out.second().is_some() || self.core.macros.state.single_block != 0 {
+                    self.core.mark_running_on();
+                }
                 self.core.moves_done = false;
+            }
+            if let Some(command) = self.core.out.pop_front() {
                 return Step::Emit(command);
             }
             if let Some(reason) = self.core.sync.take() {
@@ -446,14 +452,12 @@ impl Interpreter {
                 return Step::End;
             }
             let result = if self.core.active.is_some() {
-                match self.core.next_cycle_move() {
-                    Ok(Some(command)) => {
-                        self.core.idle_blocks = 0;
-                        self.core.moves_done = false;
-                        return Step::Emit(command);
-                    }
-                    ended => ended.map(drop).map_err(Halt::from),
+                if let Some(command) = self.core.next_cycle_move() {
+                    self.core.idle_blocks = 0;
+                    self.core.moves_done = false;
+                    return Step::Emit(command);
                 }
+                self.core.look_at_cycle_move().map_err(Halt::from)
             } else if self.core.is_due() {
                 self.core.finish_waiting(&self.block, environment).map_err(Halt::from)
             } else {

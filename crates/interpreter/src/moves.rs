@@ -12,7 +12,7 @@ use turnwright_units::{Feed, FeedPerMinute, FeedPerRevolution, Position, WorkTip
 
 use crate::flow::FrameKind;
 use crate::limits;
-use crate::machine::{BlockPlace, Core};
+use crate::machine::Core;
 use crate::modal::FeedMode;
 use crate::plane::place;
 use crate::report::Alarm;
@@ -21,18 +21,17 @@ use crate::report::Alarm;
 #[derive(Debug)]
 pub(crate) struct ActiveCycle {
     pub(crate) moves: CycleMoves,
-    pub(crate) code: u16,
+    code: u16,
     /// The block that runs the cycle.
-    pub(crate) at: BlockPlace,
+    origin: Origin,
     /// Lines of the figure's elements.
-    pub(crate) lines: Vec<u32>,
+    lines: Vec<u32>,
     /// Passes of the same modal cycle made before.
-    pub(crate) passes_before: u32,
-    pub(crate) moves_made: u64,
+    passes_before: u32,
     /// What single-block operation stops behind.
     stops_behind: StopUnit,
-    /// The next move, where it decides about a stop behind the one before.
-    next: Option<CycleMove>,
+    /// The next move: it decides about a stop behind the one before.
+    ahead: Option<CycleMove>,
 }
 
 /// Single-block operation is switched off by the program: the bit of `#3003`.
@@ -167,9 +166,23 @@ impl Core {
         }
     }
 
-    /// Gives out a move of the block in work and takes its end as the tool's place.
-    #[inline]
+    /// Gives out a move of the block in work and takes its end as the tool's place. Always inlined: the action is
+    /// then made where it waits to be given out.
+    #[inline(always)]
     pub(crate) fn emit_move(&mut self, to: Position<WorkTip>, action: Action) -> Result<(), Alarm> {
+        if self.looks_at_moves || self.untaken.is_some() || self.capture.is_some() {
+            return self.emit_looked_at(to, action);
+        }
+        if to != self.tip || is_move_of_its_own(&action) {
+            self.tip = to;
+            let runs_on = matches!(action, Action::Thread { .. });
+            self.out.push_back(Command::new(action, Origin { runs_on, ..self.origin() }));
+        }
+        Ok(())
+    }
+
+    #[cold]
+    fn emit_looked_at(&mut self, to: Position<WorkTip>, action: Action) -> Result<(), Alarm> {
         if self.capture.is_some() {
             return self.capture_any(to, action);
         }
@@ -178,20 +191,9 @@ impl Core {
         }
         let goes = to != self.tip || is_move_of_its_own(&action);
         let from = std::mem::replace(&mut self.tip, to);
-        if goes {
-            if self.looks_at_moves {
-                return self.emit_looked_at(from, action);
-            }
-            let mut origin = self.origin();
-            origin.runs_on = matches!(action, Action::Thread { .. });
-            self.out.push_back(Command::new(action, origin));
-        }
-        Ok(())
-    }
-
-    #[cold]
-    fn emit_looked_at(&mut self, from: Position<WorkTip>, action: Action) -> Result<(), Alarm> {
-        if self.compensation.is_some() {
+        if !goes {
+            Ok(())
+        } else if self.compensation.is_some() {
             self.compensate(from, action)
         } else {
             let mut origin = self.origin();
@@ -271,7 +273,7 @@ impl Core {
     /// Starts to give out the moves of a cycle.
     pub(crate) fn start_cycle(
         &mut self,
-        moves: CycleMoves,
+        mut moves: CycleMoves,
         code: u16,
         lines: Vec<u32>,
         passes_before: u32,
@@ -287,16 +289,17 @@ impl Core {
             self.suspend_compensation()?;
         }
         let stops_behind = self.stop_unit(&moves);
-        self.active = Some(ActiveCycle {
-            moves,
-            code,
-            at: self.at,
-            lines,
-            passes_before,
-            moves_made: 0,
-            stops_behind,
-            next: None,
-        });
+        let origin = Origin {
+            source: self.at.source.0,
+            sequence: self.at.sequence,
+            program: self.program,
+            depth: self.depth(),
+            ..Origin::line(self.at.line)
+        };
+        let ahead = moves.next();
+        self.cycle_moves_end =
+            self.cycle_moves.saturating_add(limits::CYCLE_MOVES_MAX).min(limits::RUN_MOVES_MAX);
+        self.active = Some(ActiveCycle { moves, code, origin, lines, passes_before, stops_behind, ahead });
         Ok(())
     }
 
@@ -312,9 +315,16 @@ impl Core {
         }
     }
 
-    /// Whether single-block operation goes on behind a command for what follows it.
+    /// Marks the command that is given out next when single-block operation goes on behind it for what follows.
     #[cold]
-    pub(crate) fn runs_on_behind(&self, command: &Command) -> bool {
+    pub(crate) fn mark_running_on(&mut self) {
+        let runs_on = self.out.front().is_some_and(|command| self.runs_on_behind(command));
+        if let Some(command) = self.out.front_mut() {
+            command.origin.runs_on |= runs_on;
+        }
+    }
+
+    fn runs_on_behind(&self, command: &Command) -> bool {
         if self.macros.state.single_block & SINGLE_BLOCK_OFF != 0 {
             return true;
         }
@@ -329,7 +339,7 @@ impl Core {
             )
         };
         let is_cut = |command: &Command| matches!(command.action, Action::Feed { .. });
-        match self.out.front() {
+        match self.out.second() {
             // The line and its corner.
             Some(next) if is_cut(command) && is_cut(next) && self.settings.corner_stops_single_block => false,
             Some(next) => block(&command.origin) == block(&next.origin),
@@ -337,60 +347,88 @@ impl Core {
         }
     }
 
-    /// The next move of the active cycle; `None` when it was given out, or when the cycle has ended.
-    pub(crate) fn next_cycle_move(&mut self) -> Result<Option<Command>, Alarm> {
-        let depth = self.depth();
-        let Some(cycle) = &mut self.active else { return Ok(None) };
-        let Some(step) = cycle.next.take().or_else(|| cycle.moves.next()) else {
-            self.active = None;
-            return Ok(None);
-        };
-        let has_more_to_do = self.waiting.is_some();
-        if cycle.stops_behind != StopUnit::Move || has_more_to_do {
-            cycle.next = cycle.moves.next();
+    /// The next move of the active cycle; `None` when the cycle has ended, or when the move must be looked at first
+    /// ([`look_at_cycle_move`](Core::look_at_cycle_move)).
+    #[inline]
+    pub(crate) fn next_cycle_move(&mut self) -> Option<Command> {
+        let cycle = self.active.as_mut()?;
+        if self.looks_at_moves || self.cycle_moves >= self.cycle_moves_end {
+            return None;
         }
-        let runs_on = match (&cycle.next, cycle.stops_behind) {
-            (Some(next), StopUnit::Pass) => step.pass == 0 || next.pass == step.pass,
+        let step = cycle.ahead.take()?;
+        let next = cycle.moves.next();
+        let origin = self.cycle_origin(&step, next.as_ref());
+        if let Some(to) = step.action.end_point() {
+            self.tip = to;
+            self.modal.position = to;
+        }
+        let command = Command::new(step.action, origin);
+        if let Some(cycle) = &mut self.active {
+            cycle.ahead = next;
+        }
+        Some(command)
+    }
+
+    /// Gives out the next move of the active cycle by way of what looks at moves; ends the cycle behind the last.
+    #[cold]
+    pub(crate) fn look_at_cycle_move(&mut self) -> Result<(), Alarm> {
+        let Some(cycle) = &mut self.active else { return Ok(()) };
+        let Some(step) = cycle.ahead.take() else {
+            self.active = None;
+            return Ok(());
+        };
+        let next = cycle.moves.next();
+        let keeps_vector = matches!(cycle.moves, CycleMoves::ThreadOnce(_));
+        if self.cycle_moves >= self.cycle_moves_end {
+            let diagnostic = Diagnostic::error("cycle-move-limit").at(self.block_place());
+            return Err(self.finish(diagnostic.with("limit", limits::CYCLE_MOVES_MAX as i64)));
+        }
+        let origin = self.cycle_origin(&step, next.as_ref());
+        if let Some(cycle) = &mut self.active {
+            cycle.ahead = next;
+        }
+        let mut action = step.action;
+        let Some(to) = action.end_point() else {
+            self.out.push_back(Command::new(action, origin));
+            return Ok(());
+        };
+        let from = std::mem::replace(&mut self.tip, to);
+        self.modal.position = to;
+        let from = self.follow_cycle(from, &mut action, keeps_vector);
+        let nose = self.compensation.is_some().then(|| self.nose());
+        self.give(from, action, origin, nose)
+    }
+
+    /// Counts a move of the active cycle, and tells where it comes from.
+    #[inline]
+    fn cycle_origin(&mut self, step: &CycleMove, next: Option<&CycleMove>) -> Origin {
+        self.cycle_moves += 1;
+        let is_off = self.macros.state.single_block & SINGLE_BLOCK_OFF != 0;
+        let Some(cycle) = &self.active else { return self.origin() };
+        let pass = if step.pass == 0 { 0 } else { step.pass.saturating_add(cycle.passes_before) };
+        Origin {
+            figure_line: step.element.and_then(|element| cycle.lines.get(element as usize).copied()),
+            cycle: Some(CycleOrigin { label: CycleLabel(cycle.code), pass, phase: step.phase }),
+            runs_on: is_off || cycle.runs_on_behind(step, next, self.waiting.is_some()),
+            ..cycle.origin
+        }
+    }
+}
+
+impl ActiveCycle {
+    /// Whether single-block operation goes on behind a move. The block may have more to do behind the cycle.
+    #[inline]
+    fn runs_on_behind(&self, step: &CycleMove, next: Option<&CycleMove>, has_more_to_do: bool) -> bool {
+        match (next, self.stops_behind) {
             (None, _) if has_more_to_do => true,
             (_, StopUnit::Move) => matches!(step.action, Action::Thread { .. }),
+            (Some(next), StopUnit::Pass) => step.pass == 0 || next.pass == step.pass,
             (Some(next), StopUnit::Hole) => {
                 let comes_to_rest = matches!(step.phase, Phase::Shift | Phase::Approach);
                 let is_move = step.action.end_point().is_some();
                 next.pass == step.pass && !(comes_to_rest && is_move)
             }
             (None, StopUnit::Pass | StopUnit::Hole) => false,
-        };
-        let runs_on = runs_on || self.macros.state.single_block & SINGLE_BLOCK_OFF != 0;
-        cycle.moves_made += 1;
-        self.cycle_moves += 1;
-        if cycle.moves_made > limits::CYCLE_MOVES_MAX || self.cycle_moves > limits::RUN_MOVES_MAX {
-            let diagnostic = Diagnostic::error("cycle-move-limit").at(self.block_place());
-            return Err(self.finish(diagnostic.with("limit", limits::CYCLE_MOVES_MAX as i64)));
         }
-        let at = &cycle.at;
-        let pass = if step.pass == 0 { 0 } else { step.pass.saturating_add(cycle.passes_before) };
-        let origin = Origin {
-            source: at.source.0,
-            line: at.line,
-            figure_line: step.element.and_then(|element| cycle.lines.get(element as usize).copied()),
-            sequence: at.sequence,
-            program: self.program,
-            depth,
-            cycle: Some(CycleOrigin { label: CycleLabel(cycle.code), pass, phase: step.phase }),
-            runs_on,
-        };
-        let mut action = step.action;
-        let keeps_vector = matches!(cycle.moves, CycleMoves::ThreadOnce(_));
-        if let Some(to) = action.end_point() {
-            let from = std::mem::replace(&mut self.tip, to);
-            self.modal.position = to;
-            if self.looks_at_moves {
-                let from = self.follow_cycle(from, &mut action, keeps_vector);
-                let nose = self.compensation.is_some().then(|| self.nose());
-                self.give(from, action, origin, nose)?;
-                return Ok(None);
-            }
-        }
-        Ok(Some(Command::new(action, origin)))
     }
 }

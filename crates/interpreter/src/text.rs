@@ -12,8 +12,9 @@ use crate::{Environment, ReadFault};
 /// Longest line that is read; a control takes a few hundred characters.
 pub const LINE_BYTES_MAX: usize = 32 * 1024;
 
-/// Bytes read at a time.
+/// Bytes read at a time, and how many of them at first: often a few lines are all that is looked for.
 const WINDOW_BYTES: usize = 64 * 1024;
+const FIRST_READ_BYTES: usize = 4 * 1024;
 
 /// A place in a text where reading can go on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -205,13 +206,13 @@ impl Text {
             self.filled -= self.at;
             self.at = 0;
         }
-        let wanted = self.filled + WINDOW_BYTES;
+        let wanted = self.filled + self.buffer.len().clamp(FIRST_READ_BYTES, WINDOW_BYTES);
         if self.buffer.len() < wanted {
             self.buffer.resize(wanted, 0);
         }
         let offset = self.base + self.filled as u64;
         let read = environment.read(self.source, offset, &mut self.buffer[self.filled..wanted])?;
-        self.filled += read.min(WINDOW_BYTES);
+        self.filled += read.min(wanted - self.filled);
         self.is_last = read == 0;
         Ok(())
     }

@@ -168,7 +168,7 @@ impl Clock {
                 if !is_chained {
                     self.thread_rpm = None;
                 }
-                self.thread(*to, shape, *lead, lead_end.unwrap_or(*lead))
+                self.thread(*to, shape, *lead, lead_end.as_deref().copied().unwrap_or(*lead))
             }
             Action::Dwell(dwell) => self.dwell(*dwell),
             Action::Spindle { state, speed, rpm_max } => {

@@ -42,6 +42,7 @@ fn thread(clock: &mut Clock, diameter: f64, z: f64, lead: f64, lead_end: Option<
 
 fn threaded(to: Position<WorkTip>, lead: f64, lead_end: Option<Lead>, is_chained: bool) -> Action {
     let (lead, start_angle) = (Lead(length(lead)), Angle::ZERO);
+    let lead_end = lead_end.map(Box::new);
     Action::Thread { to, shape: Shape::Line, lead, lead_end, start_angle, is_chained }
 }
 

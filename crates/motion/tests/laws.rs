@@ -312,7 +312,7 @@ fn any_action(random: &mut Random) -> Action {
         4 => Action::Thread {
             to: place(random),
             lead: Lead(any_length(random)),
-            lead_end: random.chance(2).then(|| Lead(any_length(random))),
+            lead_end: random.chance(2).then(|| Box::new(Lead(any_length(random)))),
             start_angle: Angle::ZERO,
             shape: Shape::Line,
             is_chained: false,

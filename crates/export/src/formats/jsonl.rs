@@ -520,10 +520,10 @@ mod tests {
 
     #[test]
     fn threads_have_lead_angle_and_the_last_lead_when_it_varies() {
-        let thread = |lead_end| Action::Thread {
+        let thread = |lead_end: Option<Lead>| Action::Thread {
             to: at(27_400, -32_000),
             lead: Lead(Length::from_nm(1_814_286)),
-            lead_end,
+            lead_end: lead_end.map(Box::new),
             start_angle: Angle::from_millidegrees(180_500),
             shape: Shape::Line,
             is_chained: false,

@@ -133,11 +133,11 @@ impl Core {
         let from = self.modal.position;
         let is_chained = self.chain_thread(call, start_angle)?;
         let start_angle = self.thread_start_angle;
-        let thread = |to, lead, lead_end, is_chained| Action::Thread {
+        let thread = |to, lead, lead_end: Option<Lead>, is_chained| Action::Thread {
             to,
             shape: Shape::Line,
             lead,
-            lead_end,
+            lead_end: lead_end.map(Box::new),
             start_angle,
             is_chained,
         };
