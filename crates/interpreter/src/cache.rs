@@ -5,17 +5,35 @@
 //! loops keeps nothing. Every block knows the one behind it and, once it has jumped, the one it jumps to.
 //! What is kept is bounded by [`CACHE_BYTES_MAX`](crate::limits::CACHE_BYTES_MAX); beyond it blocks are read anew.
 
+use std::num::NonZeroU32;
+
 use turnwright_diagnostics::SourceId;
 use turnwright_syntax::{Block, Value, Word};
 
 use crate::index::{NumberMap, Resume};
 use crate::limits::CACHE_BYTES_MAX;
 use crate::machine::BlockPlace;
-use crate::macros::{Code, Statement};
+use crate::macros::{Code, Quick, Statement};
 
-/// A block that is kept.
+/// A block that is kept: its number from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct BlockId(u32);
+pub(crate) struct BlockId(NonZeroU32);
+
+impl BlockId {
+    #[inline]
+    const fn place(self) -> usize {
+        self.0.get() as usize - 1
+    }
+}
+
+/// The blocks that a block has led to so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Links {
+    /// The one behind it.
+    pub(crate) next: Option<BlockId>,
+    /// The one that it jumps to.
+    pub(crate) jump: Option<BlockId>,
+}
 
 /// What a kept block does.
 #[derive(Clone, Copy, Debug)]
@@ -47,14 +65,14 @@ struct Entry {
     /// Switches that skip it.
     skip: u16,
     text: (u32, u32),
-    next: Option<BlockId>,
-    jump: Option<BlockId>,
 }
 
 /// The blocks that are kept.
 #[derive(Debug, Default)]
 pub(crate) struct Cache {
     entries: Vec<Entry>,
+    /// Of each entry, what a loop asks for again and again.
+    quick: Vec<(Quick, Links)>,
     words: Vec<Word>,
     /// Compiled values of the words above, for those that are expressions.
     codes: Vec<Code>,
@@ -106,10 +124,10 @@ impl Cache {
     #[inline]
     fn arrive(&mut self, id: BlockId) {
         if let Some((from, way)) = self.open.take() {
-            let entry = &mut self.entries[from.0 as usize];
+            let links = &mut self.quick[from.place()].1;
             match way {
-                Way::Next => entry.next = Some(id),
-                Way::Jump => entry.jump = Some(id),
+                Way::Next => links.next = Some(id),
+                Way::Jump => links.jump = Some(id),
             }
         }
         self.current = Some(id);
@@ -118,29 +136,41 @@ impl Cache {
     /// What a block does, and the switches that skip it.
     #[inline]
     pub(crate) fn kept(&self, id: BlockId) -> (&Kept, u16) {
-        let entry = &self.entries[id.0 as usize];
+        let entry = &self.entries[id.place()];
         (&entry.kept, entry.skip)
+    }
+
+    /// A block as a loop of statements sees it.
+    #[inline]
+    pub(crate) fn quick(&self, id: BlockId) -> (Quick, Links) {
+        self.quick[id.place()]
+    }
+
+    /// Goes to a block that another leads to.
+    #[inline]
+    pub(crate) fn go_to(&mut self, id: BlockId) {
+        self.current = Some(id);
     }
 
     /// The place of the current block.
     #[inline]
     pub(crate) fn place(&self, id: BlockId) -> BlockPlace {
-        self.entries[id.0 as usize].at
+        self.entries[id.place()].at
     }
 
     /// Where reading goes on behind a block.
     pub(crate) fn behind(&self, id: BlockId) -> Resume {
-        self.entries[id.0 as usize].behind
+        self.entries[id.place()].behind
     }
 
     /// Where a block begins.
     pub(crate) fn start(&self, id: BlockId) -> Resume {
-        self.entries[id.0 as usize].start
+        self.entries[id.place()].start
     }
 
     /// The text of the current block's line.
     pub(crate) fn line(&self, id: BlockId) -> &[u8] {
-        let (start, end) = self.entries[id.0 as usize].text;
+        let (start, end) = self.entries[id.place()].text;
         &self.text[start as usize..end as usize]
     }
 
@@ -148,10 +178,10 @@ impl Cache {
     #[inline]
     pub(crate) fn follow(&mut self, way: Way) -> bool {
         let Some(id) = self.current else { return false };
-        let entry = &self.entries[id.0 as usize];
+        let links = &self.quick[id.place()].1;
         let to = match way {
-            Way::Next => entry.next,
-            Way::Jump => entry.jump,
+            Way::Next => links.next,
+            Way::Jump => links.jump,
         };
         if to.is_some() {
             self.current = to;
@@ -195,31 +225,41 @@ impl Cache {
         self.words.extend_from_slice(&block.words);
         self.codes.extend_from_slice(codes);
         self.codes.resize(self.words.len(), Code::NONE);
-        Some(self.keep(Kept::Words { first, count, computes }, frame))
+        self.keep(Kept::Words { first, count, computes }, Quick::Not, frame)
     }
 
     /// Keeps a statement, or a block with nothing to execute; `None` when there is no room.
-    pub(crate) fn keep_statement(&mut self, kept: Kept, frame: Frame<'_>) -> Option<BlockId> {
-        self.has_room(frame.line.len()).then(|| self.keep(kept, frame))
+    pub(crate) fn keep_statement(
+        &mut self,
+        statement: Option<(Statement, Quick)>,
+        frame: Frame<'_>,
+    ) -> Option<BlockId> {
+        let (kept, quick) = match statement {
+            Some((statement, quick)) => (Kept::Statement(statement), quick),
+            None => (Kept::Blank, Quick::Next),
+        };
+        if self.has_room(frame.line.len()) { self.keep(kept, quick, frame) } else { None }
     }
 
     fn has_room(&self, more: usize) -> bool {
         // The table of places holds as much again as an entry at most.
-        let entries = self.entries.len() * (size_of::<Entry>() + 48);
+        let entries = self.entries.len() * (size_of::<Entry>() + size_of::<(Quick, Links)>() + 48);
         let words = self.words.len() * (size_of::<Word>() + size_of::<Code>());
         entries + words + self.text.len() + more < CACHE_BYTES_MAX
     }
 
-    fn keep(&mut self, kept: Kept, frame: Frame<'_>) -> BlockId {
-        let id = BlockId(self.entries.len() as u32);
+    fn keep(&mut self, kept: Kept, quick: Quick, frame: Frame<'_>) -> Option<BlockId> {
+        let id = BlockId(NonZeroU32::new(self.entries.len() as u32 + 1)?);
         let start = self.text.len() as u32;
         self.text.extend_from_slice(frame.line);
         let text = (start, self.text.len() as u32);
         let Place { at, start, behind, skip } = frame.place;
-        self.entries.push(Entry { at, start, behind, kept, skip, text, next: None, jump: None });
+        self.entries.push(Entry { at, start, behind, kept, skip, text });
+        // A block that a switch may skip is looked at each time.
+        self.quick.push((if skip == 0 { quick } else { Quick::Not }, Links::default()));
         self.places.insert((start.line.source, start.line.offset, start.from as u32), id);
         self.arrive(id);
-        id
+        Some(id)
     }
 }
 

@@ -166,9 +166,26 @@ impl Core {
         }
     }
 
-    /// Gives out a move of the block in work and takes its end as the tool's place. Always inlined: the action is
-    /// then made where it waits to be given out.
-    #[inline(always)]
+    /// As [`Core::emit_move`], for the moves of every day: they are made where they wait to be given out, and not
+    /// carried there.
+    #[inline]
+    pub(crate) fn emit_made(
+        &mut self,
+        to: Position<WorkTip>,
+        make: impl Fn() -> Action,
+    ) -> Result<(), Alarm> {
+        if self.looks_at_moves || self.untaken.is_some() || self.capture.is_some() {
+            return self.emit_looked_at(to, make());
+        }
+        if to != self.tip || is_move_of_its_own(&make()) {
+            self.tip = to;
+            let origin = self.origin();
+            self.out.push_made(|| Command::new(make(), origin));
+        }
+        Ok(())
+    }
+
+    /// Gives out a move of the block in work and takes its end as the tool's place.
     pub(crate) fn emit_move(&mut self, to: Position<WorkTip>, action: Action) -> Result<(), Alarm> {
         if self.looks_at_moves || self.untaken.is_some() || self.capture.is_some() {
             return self.emit_looked_at(to, action);

@@ -21,12 +21,21 @@ impl Queue {
         self.first.is_none()
     }
 
-    #[inline]
     pub(crate) fn push_back(&mut self, command: Command) {
         if self.first.is_none() {
             self.first = Some(command);
         } else {
             self.behind.push_back(command);
+        }
+    }
+
+    /// Makes a command in the place where it waits.
+    #[inline]
+    pub(crate) fn push_made(&mut self, make: impl Fn() -> Command) {
+        if self.first.is_none() {
+            self.first = Some(make());
+        } else {
+            self.push_back(make());
         }
     }
 

@@ -12,6 +12,7 @@ use crate::cache::{BlockId, Kept};
 use crate::index::Resume;
 use crate::limits;
 use crate::machine::{BlockPlace, Core, Halt};
+use crate::macros::Quick;
 use crate::report::Alarm;
 use crate::text::Cursor;
 
@@ -126,6 +127,7 @@ impl Core {
     ) -> Result<(), Halt> {
         let mut id = id;
         loop {
+            id = self.run_quick(id);
             self.at = self.cache.place(id);
             self.count_block()?;
             self.count_idle(1)?;
@@ -299,10 +301,11 @@ impl Core {
             let statement = self.compile_statement(from..to)?;
             self.check_loop(statement, environment)?;
             let frame = self.kept_frame(block, start, behind);
-            self.cache.keep_statement(Kept::Statement(statement), frame.of(self.text.bytes(&self.line)))
+            let quick = Quick::of(&statement, &self.macros.machine);
+            self.cache.keep_statement(Some((statement, quick)), frame.of(self.text.bytes(&self.line)))
         } else if block.words.is_empty() {
             let frame = self.kept_frame(block, start, behind);
-            self.cache.keep_statement(Kept::Blank, frame.of(self.text.bytes(&self.line)))
+            self.cache.keep_statement(None, frame.of(self.text.bytes(&self.line)))
         } else {
             let mut codes = Vec::new();
             self.compile_words(block, &mut codes)?;

@@ -132,8 +132,8 @@ impl Core {
             return self.arc_in_path(arc.block, (arc.from, arc.to), (arc.turn, centre), arc.feed);
         }
         self.modal.position = arc.to;
-        let shape = Shape::Arc { turn: arc.turn, centre };
-        self.emit_move(arc.to, Action::Feed { to: arc.to, shape, feed: arc.feed, others: None })
+        let Arc { to, turn, feed, .. } = *arc;
+        self.emit_made(to, || Action::Feed { to, shape: Shape::Arc { turn, centre }, feed, others: None })
     }
 
     fn arc_by_radius(&mut self, arc: &Arc<'_>, word: &Word) -> Result<(), Alarm> {

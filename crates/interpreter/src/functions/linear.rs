@@ -40,5 +40,5 @@ fn linear(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     }
     let to = core.target(call.block)?;
     core.modal.position = to;
-    core.emit_move(to, Action::Feed { to, shape: Shape::Line, feed, others: None })
+    core.emit_made(to, || Action::Feed { to, shape: Shape::Line, feed, others: None })
 }

@@ -33,5 +33,5 @@ fn rapid(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     }
     let to = core.target(call.block)?;
     core.modal.position = to;
-    core.emit_move(to, Action::Rapid { to, path, others: None })
+    core.emit_made(to, || Action::Rapid { to, path, others: None })
 }

@@ -201,6 +201,30 @@ impl Machine {
         within(value, self.arithmetic.rules.magnitude_max).then_some(value)
     }
 
+    /// The value of code that needs nothing but variables ([`Machine::stands_alone`]); `None` where there is none.
+    #[inline]
+    pub(super) fn value(&mut self, code: Code, variables: &Variables) -> Option<f64> {
+        if let Some(value) = self.at_once(code, variables) {
+            return Some(value);
+        }
+        match self.start(code, variables) {
+            Outcome::Value(value) => Some(value),
+            _ => None,
+        }
+    }
+
+    /// Whether running code twice gives the same twice, and asks nobody.
+    pub(super) fn stands_alone(&self, code: Code) -> bool {
+        let ops = self.code.get(code.start as usize..code.end as usize).unwrap_or_default();
+        ops.iter().all(|op| match op {
+            Op::Read | Op::RoundToIncrement | Op::AddPoint(_) | Op::Parameter | Op::AxisNumber(_) => false,
+            Op::Call(function) | Op::CallTwo(function) => {
+                !matches!(function, Function::Random | Function::RandomBetween)
+            }
+            _ => true,
+        })
+    }
+
     /// Runs code from its start.
     #[inline]
     pub(crate) fn start(&mut self, code: Code, variables: &Variables) -> Outcome {

@@ -10,6 +10,7 @@ mod calls;
 mod code;
 mod names;
 mod output;
+mod quick;
 mod statement;
 mod stored;
 mod system;
@@ -21,6 +22,7 @@ use arithmetic::{ArcSine, Rules};
 pub(crate) use calls::{CallKind, CodeCalls, ModalCall, Program};
 pub(crate) use code::Code;
 use code::{Machine, Outcome};
+pub(crate) use quick::Quick;
 pub(crate) use statement::Statement;
 use turnwright_control::policy::{
     ArcSineRange, BareArgument, JoinedConditions, MacroFunctions, MacroNames, MacroPrecision, NullVariable,
@@ -141,14 +143,26 @@ impl Core {
     }
 
     /// Runs compiled code; in a word, `ROUND` rounds to what its address counts in.
+    #[inline]
     fn evaluate_all(
         &mut self,
         code: Code,
         address: Option<u8>,
         environment: &mut dyn Environment,
     ) -> Result<f64, Halt> {
-        let macros = &mut self.macros;
-        let mut outcome = macros.machine.start(code, &macros.variables);
+        match self.macros.machine.start(code, &self.macros.variables) {
+            Outcome::Value(value) => Ok(value),
+            outcome => self.evaluate_rest(outcome, address, environment),
+        }
+    }
+
+    /// Gives code what it asks for until it has a value.
+    fn evaluate_rest(
+        &mut self,
+        mut outcome: Outcome,
+        address: Option<u8>,
+        environment: &mut dyn Environment,
+    ) -> Result<f64, Halt> {
         loop {
             let value = match outcome {
                 Outcome::Value(value) => return Ok(value),
