@@ -429,6 +429,19 @@ impl Interpreter {
     /// Goes on until there is something to say.
     #[inline]
     pub fn step(&mut self, environment: &mut dyn Environment) -> Step {
+        // The moves of a cycle come one behind the other with nothing in between.
+        if self.core.out.is_empty()
+            && self.core.sync.is_none()
+            && let Some(command) = self.core.next_cycle_move()
+        {
+            self.core.idle_blocks = 0;
+            self.core.moves_done = false;
+            return Step::Emit(command);
+        }
+        self.step_by_blocks(environment)
+    }
+
+    fn step_by_blocks(&mut self, environment: &mut dyn Environment) -> Step {
         loop {
             if let Some(command) = self.core.out.front() {
                 if command.action.end_point().is_some() {

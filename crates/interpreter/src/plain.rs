@@ -19,6 +19,12 @@ const AXES: u32 = Block::bit(b'X') | Block::bit(b'Z') | Block::bit(b'U') | Block
 const BEND: u32 = Block::bit(b'I') | Block::bit(b'K') | Block::bit(b'R');
 const PLAIN: u32 = AXES | BEND | Block::bit(b'G') | Block::bit(b'N') | Block::bit(b'F');
 
+/// Whether a block has words that no plain one has.
+#[inline]
+pub(crate) const fn has_other_words(block: &Block) -> bool {
+    block.present() & !PLAIN != 0
+}
+
 impl Core {
     /// Executes a block if it is plain; false when it is not, and nothing was done.
     #[inline]
@@ -28,7 +34,7 @@ impl Core {
         environment: &mut dyn Environment,
     ) -> Result<bool, Alarm> {
         let present = block.present();
-        if present & !PLAIN != 0
+        if has_other_words(block)
             || present & AXES == 0
             || block.has_comma
             || block.words.len() as u32 != present.count_ones()

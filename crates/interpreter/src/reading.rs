@@ -143,9 +143,10 @@ impl Core {
                     self.count_idle(limits::IDLE_WORD_BLOCKS)?;
                     if computes {
                         self.macros.word_values.clear();
+                        let may_be_passed = !self.is_plain || crate::plain::has_other_words(block);
                         block.resolve(|word, place| {
                             let code = self.cache.code(first, place);
-                            self.word_value(word, code, environment)
+                            self.word_value(word, code, may_be_passed, environment)
                         })?;
                     }
                     self.execute(block, environment)?;

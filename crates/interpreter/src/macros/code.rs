@@ -78,6 +78,11 @@ impl Code {
     pub(crate) const NONE: Self = Self { start: 0, end: 0 };
     /// What stands there is no expression but a name.
     pub(crate) const NAME: Self = Self { start: u32::MAX, end: u32::MAX };
+
+    #[inline]
+    const fn is_one_operation(self) -> bool {
+        self.end.wrapping_sub(self.start) == 1
+    }
 }
 
 /// What running a piece of code came to.
@@ -183,7 +188,7 @@ impl Machine {
     /// code, and where there is no value.
     #[inline]
     pub(crate) fn at_once(&self, code: Code, variables: &Variables) -> Option<f64> {
-        if code.end != code.start + 1 {
+        if !code.is_one_operation() {
             return None;
         }
         let slots = variables.slots();
@@ -204,7 +209,9 @@ impl Machine {
     /// The value of code that needs nothing but variables ([`Machine::stands_alone`]); `None` where there is none.
     #[inline]
     pub(super) fn value(&mut self, code: Code, variables: &Variables) -> Option<f64> {
-        if let Some(value) = self.at_once(code, variables) {
+        if code.is_one_operation()
+            && let Some(value) = self.at_once(code, variables)
+        {
             return Some(value);
         }
         match self.start(code, variables) {

@@ -138,12 +138,16 @@ impl Core {
     pub(crate) fn evaluate(&mut self, code: Code, environment: &mut dyn Environment) -> Result<f64, Halt> {
         match self.macros.machine.at_once(code, &self.macros.variables) {
             Some(value) => Ok(value),
-            None => self.evaluate_all(code, None, environment),
+            None => self.evaluate_long(code, environment),
         }
     }
 
+    fn evaluate_long(&mut self, code: Code, environment: &mut dyn Environment) -> Result<f64, Halt> {
+        self.evaluate_all(code, None, environment)
+    }
+
     /// Runs compiled code; in a word, `ROUND` rounds to what its address counts in.
-    #[inline]
+    #[inline(always)]
     fn evaluate_all(
         &mut self,
         code: Code,
@@ -198,7 +202,7 @@ impl Core {
             false => self.name_axes(block, environment),
         };
         let result = match named.and_then(|()| Ok(self.compile_words(block, &mut codes)?)) {
-            Ok(()) => block.resolve(|word, place| self.word_value(word, codes[place], environment)),
+            Ok(()) => block.resolve(|word, place| self.word_value(word, codes[place], true, environment)),
             Err(halt) => Err(halt),
         };
         self.macros.codes = codes;
@@ -232,12 +236,14 @@ impl Core {
         Ok(())
     }
 
-    /// The number of a word whose value is an expression; `None` takes the word out of the block.
-    #[inline]
+    /// The number of a word whose value is an expression; `None` takes the word out of the block. The value itself
+    /// is kept when a call may pass it on.
+    #[inline(always)]
     pub(crate) fn word_value(
         &mut self,
         word: &Word,
         code: Code,
+        may_be_passed: bool,
         environment: &mut dyn Environment,
     ) -> Result<Resolved, Halt> {
         if code == Code::NONE || code == Code::NAME {
@@ -250,7 +256,9 @@ impl Core {
         if is_null(value) && self.control.policies.null_variable == NullVariable::IsNothing {
             return Ok(Resolved::Absent);
         }
-        self.macros.word_values.push((word.start, value));
+        if may_be_passed {
+            self.macros.word_values.push((word.start, value));
+        }
         match Decimal::computed(number(value)) {
             Some(decimal) => Ok(Resolved::Number(decimal)),
             None => Err(self.alarm("number-too-long", word).into()),

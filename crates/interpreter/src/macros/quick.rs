@@ -71,7 +71,8 @@ impl Core {
     #[inline]
     pub(crate) fn run_quick(&mut self, id: BlockId) -> BlockId {
         // Who reads a figure, finishes one or waits for an interrupt looks at every block.
-        let is_finishing = self.frames.last().is_some_and(|frame| matches!(frame.kind, FrameKind::Finish { .. }));
+        let is_finishing =
+            self.frames.last().is_some_and(|frame| matches!(frame.kind, FrameKind::Finish { .. }));
         if is_finishing || self.capture.is_some() || self.macros.interrupt.is_some() {
             return id;
         }
@@ -80,7 +81,9 @@ impl Core {
         let (mut id, mut run) = (id, 0);
         while run < most {
             let (quick, links) = self.cache.quick(id);
-            let Some(next) = quick.run(links, &mut self.macros.machine, &mut self.macros.variables) else { break };
+            let Some(next) = quick.run(links, &mut self.macros.machine, &mut self.macros.variables) else {
+                break;
+            };
             (id, run) = (next, run + 1);
         }
         self.blocks_run += run;
