@@ -251,7 +251,7 @@ impl Machining {
         if !is_chained {
             self.phase = Phase::starting_at(*start_angle);
         }
-        let lead_mm = (lead.0.to_mm(), lead_end.unwrap_or(*lead).0.to_mm());
+        let lead_mm = (lead.0.to_mm(), lead_end.as_deref().unwrap_or(lead).0.to_mm());
         let mut removed = Removed::default();
         for way in ways(from, self.at, form) {
             let Some(turns) = self.phase.turns(&way, lead_mm) else {
