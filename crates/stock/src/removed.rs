@@ -72,9 +72,14 @@ impl Removed {
     }
 
     pub(crate) fn contact(&self) -> Option<Contact> {
-        let bounds = self.bounds?;
+        Some(Contact::around(self.bounds?, self.area_mm2, self.volume_mm3))
+    }
+}
+
+impl Contact {
+    /// Of material with this rectangle round it.
+    pub(crate) fn around(bounds: Bounds, area_mm2: f64, volume_mm3: f64) -> Self {
         let (wide, high) = (bounds.max.z - bounds.min.z, bounds.max.x - bounds.min.x);
-        let (area_mm2, volume_mm3) = (self.area_mm2, self.volume_mm3);
-        Some(Contact { bounds, depth_mm: wide.min(high), area_mm2, volume_mm3 })
+        Self { bounds, depth_mm: wide.min(high), area_mm2, volume_mm3 }
     }
 }

@@ -306,13 +306,11 @@ impl Machining {
             return;
         }
         for piece in self.section.drop_pieces(|piece| !is_held(piece.bounds.min.z)) {
-            let contact = Contact {
-                bounds: piece.bounds,
-                depth_mm: 0.0,
-                area_mm2: piece.area_mm2,
-                volume_mm3: piece.volume_mm3,
-            };
-            teller.tell(EventKind::CutOff, Some(contact), || at);
+            // A speck between edges that nearly lie on each other is no part.
+            if let Some(contact) = deep(Some(Contact::around(piece.bounds, piece.area_mm2, piece.volume_mm3)))
+            {
+                teller.tell(EventKind::CutOff, Some(contact), || at);
+            }
         }
     }
 }
