@@ -333,9 +333,13 @@ fn segment_area(radius: f64, chord_squared: f64, from: (f64, f64), to: (f64, f64
         let series = SERIES.iter().rev().fold(0.0, |sum, factor| sum * sine_squared + factor);
         return radius * radius / 2.0 * series * sine_squared * sine_squared.sqrt();
     }
-    let cross = from.0 * to.1 - from.1 * to.0;
-    let angle = libm::atan2(cross.abs(), from.0 * to.0 + from.1 * to.1);
-    radius * radius / 2.0 * (angle - libm::sin(angle))
+    // Sine and cosine of half the angle; the lesser of them tells the angle best.
+    let (across, above) = (from.0 + to.0, from.1 + to.1);
+    let cosine_squared = (across * across + above * above) / (4.0 * radius * radius);
+    let (sine, cosine) = (sine_squared.sqrt(), cosine_squared.sqrt());
+    let half =
+        if sine < cosine { libm::asin(sine) } else { std::f64::consts::FRAC_PI_2 - libm::asin(cosine) };
+    radius * radius * (half - sine * cosine)
 }
 
 #[cfg(test)]

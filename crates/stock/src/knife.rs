@@ -18,6 +18,8 @@ pub(crate) struct Knife<'a> {
     pub(crate) from: f64,
     pub(crate) to: f64,
     pub(crate) removed: Removed,
+    /// What is left is not seen to hang together; it may, further off.
+    pub(crate) may_part: bool,
     stops: &'a mut Stops,
 }
 
@@ -38,7 +40,7 @@ pub(crate) struct Reach {
 impl<'a> Knife<'a> {
     pub(crate) fn new(stencil: &'a Stencil, stops: &'a mut Stops) -> Self {
         let (from, to) = (stencil.lower.from, stencil.lower.to().min(stencil.upper.to()));
-        Self { stencil, from, to, removed: Removed::default(), stops }
+        Self { stencil, from, to, removed: Removed::default(), may_part: false, stops }
     }
 
     /// How the stencil lies to the rectangle between two Z and two X; `None` when it misses it.
@@ -128,8 +130,7 @@ fn carve_between(
                 left.push_band(Band { floor: *edge.edge, roof: band.roof });
                 taken.roof = *edge.edge;
             }
-            // Taking all of a band, or out of its middle, may part what it joined.
-            removed.add(&taken, from, to, bottom.is_some() == top.is_some());
+            removed.add(&taken, from, to);
         }
         left.end_slab(from, to);
         from = to;

@@ -76,11 +76,46 @@ fn bond(a: &Band, b: &Band, z: f64) -> f64 {
     a.roof.at(z).min(b.roof.at(z)) - a.floor.at(z).max(b.floor.at(z))
 }
 
+/// Whether slabs hang together as far as they go; of slabs with many bands it is not found out.
+pub(crate) fn hangs_together<'a>(slabs: impl Iterator<Item = (&'a Slab, &'a [Band])>) -> bool {
+    const BANDS_MAX: usize = 6;
+    let mut before: Option<(&Slab, &[Band])> = None;
+    let mut pieces = [0; BANDS_MAX];
+    let (mut count, mut next) = (0, 0);
+    for (slab, bands) in slabs {
+        if bands.len() > BANDS_MAX {
+            return false;
+        }
+        let (last, others) = before.filter(|(last, _)| last.to == slab.from).unwrap_or((slab, &[]));
+        let mut now = [0; BANDS_MAX];
+        for (index, band) in bands.iter().enumerate() {
+            next += 1;
+            count += 1;
+            now[index] = next;
+            for (other, _) in
+                others.iter().enumerate().filter(|(_, other)| bond(other, band, last.to) > BOND_MM)
+            {
+                let (piece, joined) = (pieces[other], now[index]);
+                if piece != joined {
+                    count -= 1;
+                    pieces.iter_mut().chain(&mut now).filter(|of| **of == joined).for_each(|of| *of = piece);
+                }
+            }
+        }
+        pieces = now;
+        before = Some((slab, bands));
+    }
+    count <= 1
+}
+
 impl Row {
     /// Whether all material that lies between two Z, or touches them, hangs together. It is looked at in ever wider
     /// neighbourhoods, so that a joint round the next corner costs no look at the whole.
     pub(crate) fn holds_together(&self, from: f64, to: f64) -> bool {
         let Some((start, end)) = self.ends() else { return true };
+        if hangs_together(self.slabs_between(from, to)) {
+            return true;
+        }
         let mut margin = 0.0;
         loop {
             let (low, high) = (from - margin, to + margin);

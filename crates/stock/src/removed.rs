@@ -38,13 +38,12 @@ impl Removed {
         self.count > 0
     }
 
-    pub(crate) fn add(&mut self, band: &Band, from: f64, to: f64, may_part: bool) {
+    pub(crate) fn add(&mut self, band: &Band, from: f64, to: f64) {
         let content = band.content(from, to);
         let (low, high) = band.range(from, to);
         self.count += 1;
         self.area_mm2 += content.area_mm2;
         self.volume_mm3 += content.volume_mm3;
-        self.may_part |= may_part;
         self.include(Point::new(low, from));
         self.include(Point::new(high, to));
     }

@@ -10,6 +10,7 @@ use crate::WELD_MM;
 use crate::band::Band;
 use crate::curve::{greater, lesser};
 use crate::knife::Knife;
+use crate::pieces::hangs_together;
 use crate::removed::Removed;
 
 /// A chunk with more slabs is parted. Below a few dozen, moving slabs about costs no more than looking at them.
@@ -181,6 +182,7 @@ impl Chunk {
             }
             let Some(reach) = knife.reach(slab.from, slab.to, slab.low, slab.high) else { continue };
             let before = index.saturating_sub(1);
+            knife.may_part |= index == 0;
             let written = written.get_or_insert(before..before);
             (written.end..index)
                 .map(|index| run.slab(index))
@@ -193,7 +195,11 @@ impl Chunk {
             let (slab, bands) = run.slab(written.end);
             left.copy(slab, bands);
             written.end += 1;
+        } else {
+            knife.may_part = true;
         }
+        // What lies beside the first and the last slab of a chunk is not looked at here.
+        knife.may_part |= !hangs_together(left.slabs());
         self.run.replace(written, left);
         self.measure();
         true

@@ -105,9 +105,10 @@ impl Section {
     fn cut_stencil(&mut self, stencil: &Stencil) -> Removed {
         let mut knife = Knife::new(stencil, &mut self.stops);
         self.row.carve(&mut knife, &mut self.left);
-        let mut removed = knife.removed;
-        removed.may_part =
-            removed.may_part && !self.row.holds_together(stencil.lower.from, stencil.lower.to());
+        let (mut removed, may_part) = (knife.removed, knife.may_part);
+        if let Some(bounds) = removed.bounds.filter(|_| may_part) {
+            removed.may_part = !self.row.holds_together(bounds.min.z, bounds.max.z);
+        }
         removed
     }
 

@@ -229,3 +229,19 @@ fn contours_are_few_and_keep_arcs_whole() {
     let first = step.contours()[0].segments[0];
     assert_eq!((first.start, first.end), (point(0., -60.), point(0., 0.)));
 }
+
+#[test]
+fn a_groove_under_a_bore_lets_go_of_what_hung_on_a_neck() {
+    // A cup with walls from 15 to 20 and a bottom from Z-30 to Z-20. A groove from outside takes the bottom down to 14,
+    // and ends exactly where the bore does: nothing but the line at Z-20 was left between wall and bottom.
+    let mut bar = Section::bar(20.0, -60.0, 0.0).expect("a bar");
+    bar.cut_hole(&Outline::rectangle(point(0., -20.), point(15., 0.)).expect("a bore"));
+    let mut groove = |from: f64, depth: f64| {
+        bar.cut_hole(&Outline::rectangle(point(depth, from), point(21., -20.)).expect("a groove")).may_part
+    };
+    assert!(!groove(-24.0, 15.5));
+    assert!(groove(-24.0, 14.0));
+    let fallen = bar.drop_pieces(|piece| piece.bounds.min.z > -21.0);
+    assert_eq!(fallen.len(), 1);
+    near(fallen[0].area_mm2, 100.0);
+}
