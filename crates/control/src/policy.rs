@@ -485,6 +485,13 @@ policies! {
         /// The hole is drilled in one go.
         NoPecks,
     }
+    /// What the word for the length of a run-out does without that for its depth, on controls with both.
+    run_out_length_alone: RunOutLengthAlone {
+        /// No depth is no run-out.
+        NoRunOut,
+        /// The run-out is as deep as long.
+        AsDeepAsLong,
+    }
     /// What the word for the way of pecking means, on controls whose drilling cycles have one.
     peck_mode_word: PeckModeWord {
         /// 0 goes back by the retract, 1 to the start level.
@@ -887,4 +894,6 @@ pub struct Limits {
     pub corner_size_max_mm: u16,
     /// Most blocks in the figure of a cycle.
     pub figure_blocks_max: u32,
+    /// Most pockets in a figure that is roughed; 0 for any number.
+    pub pockets_max: u32,
 }

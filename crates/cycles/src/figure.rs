@@ -457,6 +457,27 @@ pub fn hump_before_end(figure: &Figure, along: CutAlong, tolerance: Tolerance) -
     (end - highest > tolerance.split(along).1).then_some(element)
 }
 
+/// How many pockets the contour has: how often it goes down again, seen in the direction of the cut.
+pub fn pocket_count(figure: &Figure, along: CutAlong, tolerance: Tolerance) -> u32 {
+    let plane = Plane::new(along == CutAlong::Z, LeastIncrement::METRIC_C);
+    let pieces = within_range(figure)
+        .and_then(|()| pocket_lead_in(figure, &plane))
+        .map_or(Vec::new(), |lead| profile(figure, &plane, &lead));
+    let slack = tolerance.split(along).1;
+    let (mut count, mut is_down) = (0, false);
+    let mut turn = pieces.first().map_or(0, |piece| piece.h0);
+    for piece in pieces {
+        // The deepest place while it goes down, the highest while it goes up.
+        if is_down == (piece.h1 > turn) {
+            turn = piece.h1;
+        } else if (piece.h1 - turn).abs() > slack {
+            (is_down, turn) = (!is_down, piece.h1);
+            count += u32::from(is_down);
+        }
+    }
+    count
+}
+
 /// Direction of the cut along v: from begin to end of the contour, or of its first stretch along v when both have
 /// the same v. `None` when nothing moves along v.
 pub(crate) fn cut_sign(pieces: &[Piece]) -> Option<i64> {

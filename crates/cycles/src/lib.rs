@@ -49,7 +49,7 @@ mod threading;
 
 pub use figure::{
     CutAlong, Element, Figure, FigureMotion, MonotonyFault, PlaneAxis, StartFault, Tolerance,
-    hump_before_end, monotony_fault, start_inside_fault, turn_back_fault,
+    hump_before_end, monotony_fault, pocket_count, start_inside_fault, turn_back_fault,
 };
 pub use groove::{Groove, GrooveRequest, PeckAxis, ReliefDirection, groove};
 pub use hole::{Clamping, Hole, HoleRequest, HoleWork, Peck, PeckRetract, Tap, hole};

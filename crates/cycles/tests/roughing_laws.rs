@@ -8,7 +8,7 @@ use turnwright_canon::{Action, Phase, RapidPath, Shape, Turn};
 use turnwright_cycles::{
     BottomEscape, Coincident, Context, CutAlong, CycleMove, Element, EscapeSpeed, Figure, FigureMotion, Hump,
     LevelOrigin, Misuse, Monotony, PocketRequest, RoughRequest, Tolerance, hump_before_end, monotony_fault,
-    rough, rough_pockets, turn_back_fault,
+    rough, rough_and_semi_finish, rough_pockets, rough_pockets_and_semi_finish, turn_back_fault,
 };
 use turnwright_units::{Feed, FeedPerRevolution, LeastIncrement, Length, Position, Radius, WorkTip};
 
@@ -459,6 +459,73 @@ fn roughing_without_pockets_leaves_the_figure_and_nothing_else() {
         let cycle = rough(case.figure(), request.rough).expect("a cycle");
         let estimate = cycle.move_estimate();
         check(&case, &request, cycle, estimate, &mut dice);
+    }
+}
+
+/// What roughing leaves for the pass that takes it off, away from the work: X, Z.
+fn left_for_semi_finish(case: &Case, dice: &mut Dice) -> (Radius, Length) {
+    let (u, v) = (-case.su * dice.between(0, 700), -case.sv * dice.between(0, 300));
+    let (x, z) = if case.along == CutAlong::Z { (u, v) } else { (v, u) };
+    (Radius(thousandths(x)), thousandths(z))
+}
+
+/// The first way home ends roughing; what follows is one pass along the figure, and nothing is left behind it but the
+/// allowance. Before it no move comes nearer than what is left for it.
+fn check_semi_finish(
+    case: &Case,
+    request: &PocketRequest,
+    (leave_x, leave_z): (Radius, Length),
+    moves: Vec<CycleMove>,
+    alone: Vec<CycleMove>,
+    dice: &mut Dice,
+) {
+    let homes = moves.iter().filter(|step| step.phase == Phase::Home).count();
+    let roughing = moves.iter().position(|step| step.phase == Phase::Home).map_or(0, |home| home + 1);
+    let (roughing, contour) = moves.split_at(roughing);
+    let rough = RoughRequest {
+        allowance_x: request.rough.allowance_x + leave_x,
+        allowance_z: request.rough.allowance_z + leave_z,
+        semi_finish: false,
+        ..request.rough
+    };
+    let levels = PocketRequest { rough, ..*request };
+    check(case, &levels, roughing.iter().cloned(), u64::MAX, dice);
+    // The pass along the figure is that of roughing to the allowance alone.
+    let along = |moves: &[CycleMove]| -> Vec<_> {
+        let contour = moves.iter().filter(|step| step.phase == Phase::Contour);
+        contour.map(|step| (step.action.clone(), step.element)).collect()
+    };
+    assert_eq!(along(contour), along(&alone), "{case:?} {request:?}");
+    assert!(homes <= 2 && contour.iter().all(|step| step.phase != Phase::Cut), "{case:?} {request:?}");
+    let last_rough = roughing.last().map_or(0, |step| step.pass);
+    assert!(contour.iter().all(|step| step.pass >= last_rough), "passes are counted on");
+}
+
+#[test]
+fn a_semi_finishing_pass_takes_off_what_roughing_has_left_for_it() {
+    let mut dice = Dice(0x5E_ED_0F_1A_7E);
+    for _ in 0..3_000 {
+        let case = Case::new(&mut dice, false);
+        let mut request = case.request(&mut dice);
+        request.rough.semi_finish = true;
+        let leave = left_for_semi_finish(&case, &mut dice);
+        let moves = rough_and_semi_finish(case.figure(), request.rough, leave.0, leave.1).expect("a cycle");
+        let alone = rough(case.figure(), request.rough).expect("a cycle");
+        check_semi_finish(&case, &request, leave, moves.collect(), alone.collect(), &mut dice);
+    }
+}
+
+#[test]
+fn a_semi_finishing_pass_takes_off_what_roughing_of_pockets_has_left_for_it() {
+    let mut dice = Dice(0x0C_0F_FE_E0);
+    for _ in 0..5_000 {
+        let case = Case::new(&mut dice, true);
+        let mut request = case.request(&mut dice);
+        request.rough.semi_finish = true;
+        let leave = left_for_semi_finish(&case, &mut dice);
+        let moves = rough_pockets_and_semi_finish(case.figure(), request, leave.0, leave.1).expect("a cycle");
+        let alone = rough_pockets(case.figure(), request).expect("a cycle");
+        check_semi_finish(&case, &request, leave, moves.collect(), alone.collect(), &mut dice);
     }
 }
 

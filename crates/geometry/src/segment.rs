@@ -81,6 +81,36 @@ impl Segment {
         }
     }
 
+    /// Distance of a point from the element, mm.
+    pub fn distance(&self, point: Point) -> f64 {
+        let to_ends = self.start.distance(point).min(self.end.distance(point));
+        if !self.holds(point, 0.0) {
+            return to_ends;
+        }
+        let across = match self.bend {
+            None => {
+                let way = Vector::between(self.start, self.end);
+                way.cross(Vector::between(self.start, point)).abs() / way.length()
+            }
+            Some(bend) => (bend.centre.distance(point) - self.radius()).abs(),
+        };
+        // An element without length has no line.
+        if across.is_finite() { across } else { to_ends }
+    }
+
+    /// The place after a part of the way, 0 to 1.
+    pub fn at(&self, part: f64) -> Point {
+        let Some(bend) = self.bend else {
+            let way = Vector::between(self.start, self.end);
+            return way.times(part).from(self.start);
+        };
+        let angle = self.sweep(bend) * bend.sense() * part;
+        let arm = Vector::between(bend.centre, self.start);
+        let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
+        let turned = Vector { z: arm.z * cosine - arm.x * sine, x: arm.z * sine + arm.x * cosine };
+        turned.from(bend.centre)
+    }
+
     /// Straight distance from one end to the point furthest from it, as far as distances grow steadily.
     pub(crate) fn reach(&self) -> f64 {
         match self.bend {

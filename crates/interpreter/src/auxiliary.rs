@@ -248,6 +248,13 @@ impl Core {
         Ok(())
     }
 
+    /// A cycle that has started the spindle stops it when it has run.
+    pub(crate) fn stop_spindle_behind_cycle(&mut self) {
+        let auxiliary =
+            Auxiliary { spindle: Some(SpindleState::Stop), acts_behind: true, ..Auxiliary::default() };
+        self.waiting = Some(Waiting { auxiliary, at: self.at, depth: self.frames.len() });
+    }
+
     /// Whether a block whose cycle has run still has something to do.
     #[inline]
     pub(crate) fn is_due(&self) -> bool {

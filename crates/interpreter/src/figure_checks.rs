@@ -6,10 +6,10 @@
 //! the cycles.
 
 use turnwright_canon::Turn;
-use turnwright_control::policy::{CycleType, MonotonyCheck, PatternMonotony, TypeTwo};
+use turnwright_control::policy::{CycleType, MonotonyCheck, PatternMonotony, RoughingCompensation, TypeTwo};
 use turnwright_cycles::{self as cycles, CutAlong};
 use turnwright_diagnostics::{Diagnostic, Place};
-use turnwright_geometry::sweep_rad;
+use turnwright_geometry::{Side, sweep_rad};
 use turnwright_syntax::{Block, Value};
 use turnwright_units::{Length, Position, Radius, WorkTip};
 
@@ -134,6 +134,9 @@ impl Core {
         call: &Call<'_>,
     ) -> Result<(), Alarm> {
         self.check_monotony(captured, kind, along, call.block)?;
+        if kind == RoughType::Two {
+            self.check_pockets(captured, along, call)?;
+        }
         let warned = self.warn_allowance_signs(call, &captured.figure, Some(along), allowances);
         if let Some(fault) = cycles::start_inside_fault(&captured.figure, along, allowances.0, allowances.1) {
             let place = self.element_place(captured, fault.element);
@@ -158,6 +161,45 @@ impl Core {
             self.warn("allowance-into-pocket-wall", word);
         }
         Ok(())
+    }
+
+    /// Compensation that shifts the figure keeps the nose on the side of the blank, which is that of the start point.
+    pub(crate) fn check_blank_side(
+        &self,
+        figure: &cycles::Figure,
+        along: CutAlong,
+        call: &Call<'_>,
+    ) -> Result<(), Alarm> {
+        let shifts = self.control.policies.roughing_compensation == RoughingCompensation::BeforeCycle;
+        let (Some(first), Some(last)) = (figure.elements.first(), figure.elements.last()) else {
+            return Ok(());
+        };
+        let (into, forward) = (first.to - figure.start, last.to - first.to);
+        // Seen with Z to the right and X up, +X lies left of the way to +Z, and -Z left of that to +X.
+        let wrong = match along {
+            CutAlong::Z => into.x.0.signum() * forward.z.signum(),
+            CutAlong::X => -into.z.signum() * forward.x.0.signum(),
+        };
+        let wrong = match wrong {
+            1 => Side::Left,
+            -1 => Side::Right,
+            _ => return Ok(()),
+        };
+        if shifts && self.compensates_on(wrong) {
+            return Err(self.alarm_at("cycle-compensation-side", call.word));
+        }
+        Ok(())
+    }
+
+    /// More pockets than the control keeps.
+    fn check_pockets(&self, captured: &Captured, along: CutAlong, call: &Call<'_>) -> Result<(), Alarm> {
+        let limit = self.control.limits.pockets_max;
+        if limit == 0 || cycles::pocket_count(&captured.figure, along, self.monotony_tolerance()) <= limit {
+            return Ok(());
+        }
+        let place = call.word.map_or_else(|| self.block_place(), |word| self.place(word));
+        let diagnostic = Diagnostic::alarm("too-many-pockets").at(place);
+        Err(self.finish(diagnostic.with("limit", i64::from(limit))))
     }
 
     /// An axis that turns back. Along the cut no pocket can be roughed; along the depth axis controls look at it only

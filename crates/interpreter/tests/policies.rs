@@ -6,7 +6,7 @@ use support::{Conditions, Run, run_on};
 use turnwright_control::Control;
 use turnwright_control::policy::{
     CycleForm, FeedPerRevolution, MissingPoint, NestedComment, OneShotWithMotion, PeckModeWord, Policies,
-    RepeatedAddress, SpeedLimitAtReset, StoppingCodes,
+    RepeatedAddress, RunOutLengthAlone, SpeedLimitAtReset, StoppingCodes,
 };
 
 fn run_with(text: &str, restarts: u32, change: impl FnOnce(&mut Policies)) -> Run {
@@ -102,6 +102,36 @@ fn cycles_may_be_read_in_one_form_only() {
     assert_eq!(run(one, "0"), "alarm PS0066 cycle-word-illegal 2:10-13\n");
     assert_eq!(run(two, "1"), "alarm PS0066 cycle-word-illegal 2:10-15\n");
     assert_eq!((run(one, "1"), run(two, "0")), (String::new(), String::new()));
+}
+
+#[test]
+fn pockets_may_be_limited() {
+    // Two pockets, at Z-12 and Z-32.
+    let text = "G98 F100. T0101\nG00 X60. Z2.\nG71 U2. R0.5\nG71 P10 Q20 U0.4\nN10 G00 X50. W0\nG01 Z-10.\n\
+                X44. Z-12.\nX50. Z-14.\nZ-30.\nX44. Z-32.\nX50. Z-34.\nN20 X60.\nM30\n";
+    let run = |pockets_max: u32| {
+        let mut control = Control::load("fanuc-0i-tf").expect("a control");
+        control.limits.pockets_max = pockets_max;
+        run_on(control, text.as_bytes(), &Conditions::on("fanuc-0i-tf"))
+    };
+    assert_eq!(run(1).diagnostics().lines().last(), Some("alarm T332 too-many-pockets 4:1-4"));
+    for enough in [0, 2, 30] {
+        assert!(run(enough).alarm.is_none(), "{}", run(enough).diagnostics());
+    }
+}
+
+#[test]
+fn a_run_out_may_be_as_deep_as_long() {
+    let text = "S600 M03\nG00 X25 Z5\nG92 X20 Z-20 F2 K2\nM30\n";
+    let run = |policy| {
+        let mut control = Control::load("gsk-980tdi").expect("a control");
+        control.policies.run_out_length_alone = policy;
+        run_on(control, text.as_bytes(), &Conditions::on("gsk-980tdi")).listing()
+    };
+    assert!(
+        run(RunOutLengthAlone::AsDeepAsLong).contains("thread d20 z-18 lead2  G92 thread 1\nthread d24 z-20")
+    );
+    assert!(run(RunOutLengthAlone::NoRunOut).contains("thread d20 z-20 lead2  G92 thread 1\nrapid d25 z-20"));
 }
 
 #[test]

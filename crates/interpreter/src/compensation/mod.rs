@@ -25,8 +25,11 @@
 
 mod element;
 mod nose;
+mod overcut;
 mod settings;
 mod single_cycle;
+
+use std::collections::VecDeque;
 
 use turnwright_canon::{Action, Command, Origin, Shape};
 use turnwright_control::policy::{CompensationGap, RoughingCompensation};
@@ -37,6 +40,7 @@ use turnwright_units::{Displacement, Position, WorkTip};
 
 use self::element::{Element, Role};
 pub(crate) use self::nose::Nose;
+use self::overcut::Passed;
 pub(crate) use self::settings::CompensationSettings;
 use crate::functions::FunctionId;
 use crate::machine::{BlockPlace, Core};
@@ -110,6 +114,8 @@ pub(crate) struct Compensation {
     has_wall_words: bool,
     /// The block in work has the code that asks for the side.
     is_code_block: bool,
+    /// The elements passed last.
+    passed: VecDeque<Passed>,
 }
 
 /// Compensation in force around a figure that knows nothing of it.
@@ -137,6 +143,7 @@ impl Compensation {
             wall: None,
             has_wall_words: false,
             is_code_block: true,
+            passed: VecDeque::new(),
         })
     }
 
@@ -487,6 +494,7 @@ impl Core {
         if let (Some(start), Some(end), Role::Contour) = (&mut start, &mut end, element.role) {
             is_cut_short = self.untangle(&element, start, end)?;
         }
+        self.look_for_overcut(path, &element, start, end.as_ref());
         let here = std::mem::replace(&mut self.at, element.at);
         let given = self.give_element(path, &element, start, end.as_ref(), is_cut_short);
         self.at = here;

@@ -246,7 +246,7 @@ impl Function {
 
     /// A turning, facing or thread cycle of one block.
     pub(crate) fn is_single_cycle(&self) -> bool {
-        matches!(self.name, "turning-cycle" | "thread-cycle" | "facing-cycle")
+        matches!(self.name, "turning-cycle" | "thread-cycle" | "facing-cycle" | "rigid-thread-cycle")
     }
 
     #[inline]
@@ -349,6 +349,7 @@ static ALL: &[&Function] = &[
     &reference_return::REFERENCE_CHECK,
     &single_cycles::TURNING_CYCLE,
     &single_cycles::THREAD_CYCLE,
+    &single_cycles::RIGID_THREAD_CYCLE,
     &single_cycles::FACING_CYCLE,
     &finishing::FINISHING,
     &rough::ROUGH_TURNING,

@@ -133,6 +133,7 @@ impl Core {
         if form == Form::OneBlockRecognised {
             self.leave_out_return(&mut captured.figure, along);
         }
+        self.check_blank_side(&captured.figure, along, call)?;
         let kind = self.rough_type(&captured, along)?;
         self.check_figure(&captured, kind, along, (allowance_x, allowance_z), call)?;
         let policies = &self.control.policies;

@@ -7,17 +7,24 @@
 //! G94.
 //!
 //! The words of the lead, and Q for the start angle, are those of single threads (`leads.rs`). On controls with the
-//! words: J and K are the run-out across and along instead of the parameters (J zero: none; K alone is as deep as
-//! long; J alone by policy as long as deep, or straight out at the end), L the number of starts, each a pass with its
+//! words: J and K are the run-out across and along instead of the parameters (J zero: none; K alone
+//! by policy none or as deep as long; J alone by policy as long as deep, or straight out at the end), L the number of starts, each a pass with its
 //! share of the turn, P1 a thread across the face. They stay in force like X and Z; Q does not. The way out of a
 //! thread is at rapid, or at the speed set for it (1466).
 //!
 //! X, Z and R stay in force while the code does: a block with a new X repeats the cycle from the same start
 //! point, one with `U0` or `W0` repeats it as it was. A code of its own without any axis word only takes effect with the next axis word.
 //!
+//! `G92.1` is G92 with the spindle led as an axis: it needs S, turns a spindle that stands clockwise, and stops it
+//! behind the cycle again, as `G32.1` does.
+//!
+//! Deliberately not here: `G92.2`, of whose run-in D and E no text at hand says along which axes they go, and `G92.3`, of
+//! whose equal crests none says how the tool moves.
+//!
 //! Source: single canned cycles of both families.
 
-use turnwright_control::policy::{RunOutWords, TaperSign, ThreadCycleWords};
+use turnwright_canon::SpindleState;
+use turnwright_control::policy::{RunOutLengthAlone, RunOutWords, TaperSign, ThreadCycleWords};
 use turnwright_cycles as cycles;
 use turnwright_units::{Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position};
 
@@ -47,6 +54,27 @@ pub(super) static THREAD_CYCLE: Function = Function::motion("thread-cycle", thre
     .triggered_by(b"R")
     .with_lead()
     .repeating();
+
+pub(super) static RIGID_THREAD_CYCLE: Function = Function::motion("rigid-thread-cycle", rigid_thread_cycle)
+    .with_letters(b"RQEIJKLPCD")
+    .triggered_by(b"R")
+    .with_lead()
+    .repeating();
+
+fn rigid_thread_cycle(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
+    if core.present_rpm().0 == 0 {
+        return Err(core.alarm_at("spindle-not-started", call.word));
+    }
+    let stands = core.modal.spindle == SpindleState::Stop;
+    if stands {
+        core.turn_spindle(SpindleState::Clockwise);
+    }
+    thread_cycle(core, call)?;
+    if stands {
+        core.stop_spindle_behind_cycle();
+    }
+    Ok(())
+}
 
 fn box_cycle(core: &mut Core, call: &mut Call<'_>, first: cycles::FirstAxis) -> Result<(), Alarm> {
     core.refuse_comma_words(call.block)?;
@@ -189,7 +217,10 @@ impl Core {
         let straight = self.control.policies.run_out_words == RunOutWords::StraightOut;
         Some(match (words.depth, words.length) {
             (None, None) => return None,
-            (None, Some(along)) => (along, along),
+            (None, Some(along)) => match self.control.policies.run_out_length_alone {
+                RunOutLengthAlone::NoRunOut => (Length::ZERO, Length::ZERO),
+                RunOutLengthAlone::AsDeepAsLong => (along, along),
+            },
             (Some(depth), along) => match along.filter(|along| !along.is_zero()) {
                 _ if depth.is_zero() => (Length::ZERO, depth),
                 Some(along) => (along, depth),
