@@ -14,6 +14,7 @@ use crate::axes::Plane;
 use crate::functions::{Function, FunctionId, Kind};
 use crate::machine::Core;
 use crate::macros::CallKind;
+use crate::plain::Plain;
 use crate::report::Alarm;
 use crate::words::Role;
 
@@ -76,10 +77,18 @@ enum MacroCall {
 }
 
 impl Core {
-    /// Executes the words of a block.
+    /// Executes the words of a block, the short way where it is a plain one and nothing looks at it.
     #[inline]
-    pub(crate) fn execute(&mut self, block: &Block, environment: &mut dyn Environment) -> Result<(), Alarm> {
-        if self.is_plain && self.execute_plain(block, environment)? {
+    pub(crate) fn execute(
+        &mut self,
+        block: &Block,
+        plain: Option<Plain>,
+        environment: &mut dyn Environment,
+    ) -> Result<(), Alarm> {
+        if self.is_plain
+            && let Some(plain) = plain
+            && self.execute_plain(block, plain, environment)?
+        {
             return Ok(());
         }
         self.is_plain = false;

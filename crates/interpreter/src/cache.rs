@@ -8,12 +8,13 @@
 use std::num::NonZeroU32;
 
 use turnwright_diagnostics::SourceId;
-use turnwright_syntax::{Block, Value, Word};
+use turnwright_syntax::{Block, Word};
 
 use crate::index::{NumberMap, Resume};
 use crate::limits::CACHE_BYTES_MAX;
 use crate::machine::BlockPlace;
 use crate::macros::{Code, Quick, Statement};
+use crate::plain::Plain;
 
 /// A block that is kept: its number from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,11 +43,42 @@ pub(crate) enum Kept {
     Words {
         first: u32,
         count: u8,
-        /// Some of them are expressions.
-        computes: bool,
+        /// Those of them that are expressions.
+        computed: Places,
+        /// What the block comes to where nothing looks at it.
+        plain: Option<Plain>,
     },
     /// Nothing to execute.
     Blank,
+}
+
+/// Places of words in a block, a bit each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Places(u64);
+
+impl Places {
+    /// The words that `codes` compute; `None` when one stands too far behind.
+    fn of(codes: &[Code]) -> Option<Self> {
+        let mut computed = codes.iter().enumerate().filter(|(_, code)| code.computes());
+        computed.try_fold(Self::default(), |Self(bits), (place, _)| {
+            Some(Self(bits | 1u64.checked_shl(place as u32).filter(|_| place < 64)?))
+        })
+    }
+
+    pub(crate) const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+}
+
+impl Iterator for Places {
+    type Item = usize;
+
+    #[inline]
+    fn next(&mut self) -> Option<usize> {
+        let place = self.0.trailing_zeros();
+        self.0 &= self.0.wrapping_sub(1);
+        (place < 64).then_some(place as usize)
+    }
 }
 
 /// A way from one block to another that is filled in when it is first gone.
@@ -215,9 +247,15 @@ impl Cache {
     }
 
     /// Keeps a block; `None` when there is no room.
-    pub(crate) fn keep_words(&mut self, block: &Block, codes: &[Code], frame: Frame<'_>) -> Option<BlockId> {
+    pub(crate) fn keep_words(
+        &mut self,
+        block: &Block,
+        codes: &[Code],
+        plain: Option<Plain>,
+        frame: Frame<'_>,
+    ) -> Option<BlockId> {
         let first = self.words.len() as u32;
-        let computes = block.words.iter().any(|word| matches!(word.value, Value::Expression { .. }));
+        let computed = Places::of(codes)?;
         let count = u8::try_from(block.words.len()).ok()?;
         if !self.has_room(frame.line.len() + block.words.len() * (size_of::<Word>() + size_of::<Code>())) {
             return None;
@@ -225,7 +263,7 @@ impl Cache {
         self.words.extend_from_slice(&block.words);
         self.codes.extend_from_slice(codes);
         self.codes.resize(self.words.len(), Code::NONE);
-        self.keep(Kept::Words { first, count, computes }, Quick::Not, frame)
+        self.keep(Kept::Words { first, count, computed, plain }, Quick::Not, frame)
     }
 
     /// Keeps a statement, or a block with nothing to execute; `None` when there is no room.

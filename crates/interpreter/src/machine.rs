@@ -432,13 +432,25 @@ impl Interpreter {
         // The moves of a cycle come one behind the other with nothing in between.
         if self.core.out.is_empty()
             && self.core.sync.is_none()
-            && let Some(command) = self.core.next_cycle_move()
+            && let Some(command) = self.next_cycle_move()
         {
-            self.core.idle_blocks = 0;
-            self.core.moves_done = false;
             return Step::Emit(command);
         }
         self.step_by_blocks(environment)
+    }
+
+    #[inline(always)]
+    fn next_cycle_move(&mut self) -> Option<Command> {
+        let command = self.core.next_cycle_move()?;
+        self.core.idle_blocks = 0;
+        self.core.moves_done = false;
+        Some(command)
+    }
+
+    /// The same on the way from blocks to a cycle, which is gone once a cycle.
+    #[cold]
+    fn first_cycle_move(&mut self) -> Option<Command> {
+        self.next_cycle_move()
     }
 
     fn step_by_blocks(&mut self, environment: &mut dyn Environment) -> Step {
@@ -465,9 +477,7 @@ impl Interpreter {
                 return Step::End;
             }
             let result = if self.core.active.is_some() {
-                if let Some(command) = self.core.next_cycle_move() {
-                    self.core.idle_blocks = 0;
-                    self.core.moves_done = false;
+                if let Some(command) = self.first_cycle_move() {
                     return Step::Emit(command);
                 }
                 self.core.look_at_cycle_move().map_err(Halt::from)

@@ -25,31 +25,44 @@ pub(crate) const fn has_other_words(block: &Block) -> bool {
     block.present() & !PLAIN != 0
 }
 
+/// What a plain block comes to, whatever its numbers are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plain {
+    /// The function and the code of its G word.
+    code: Option<(FunctionId, u16)>,
+}
+
 impl Core {
-    /// Executes a block if it is plain; false when it is not, and nothing was done.
+    /// Sorts a block that is nothing but a path; `None` for any other.
     #[inline]
-    pub(crate) fn execute_plain(
-        &mut self,
-        block: &Block,
-        environment: &mut dyn Environment,
-    ) -> Result<bool, Alarm> {
+    pub(crate) fn plain(&self, block: &Block) -> Option<Plain> {
         let present = block.present();
         if has_other_words(block)
             || present & AXES == 0
             || block.has_comma
             || block.words.len() as u32 != present.count_ones()
         {
-            return Ok(false);
+            return None;
         }
-        let word = block.word(b'G');
-        let code = match word.map(|word| self.plain_code(word)) {
+        let code = match block.word(b'G') {
             None => None,
-            Some(Some(code)) => Some(code),
-            Some(None) => return Ok(false),
+            Some(word) => Some(self.plain_code(word)?),
         };
-        let id = code.map_or(self.modal.motion, |(id, _)| id);
-        let function = id.get();
-        if !function.is_path || (present & BEND != 0 && function.draws_lines) {
+        Some(Plain { code })
+    }
+
+    /// Executes a plain block; false when its function is none of a path or no axis is left, and nothing was done.
+    #[inline]
+    pub(crate) fn execute_plain(
+        &mut self,
+        block: &Block,
+        Plain { code }: Plain,
+        environment: &mut dyn Environment,
+    ) -> Result<bool, Alarm> {
+        let function = code.map_or(self.modal.motion, |(id, _)| id).get();
+        // The words of a kept block may have come to nothing since it was sorted.
+        let has_axes = block.present() & AXES != 0;
+        if !has_axes || !function.is_path || (block.present() & BEND != 0 && function.draws_lines) {
             return Ok(false);
         }
         if let Some(place) = block.place(b'N') {
@@ -61,7 +74,8 @@ impl Core {
         if let Some(word) = block.word(b'F') {
             self.feed_word(word, function)?;
         }
-        function.run(self, &mut Call { block, environment, code: self.modal.motion_code, word })?;
+        let (code, word) = (self.modal.motion_code, block.word(b'G'));
+        function.run(self, &mut Call { block, environment, code, word })?;
         self.is_plain = self.corner.is_none();
         Ok(true)
     }

@@ -52,7 +52,8 @@ impl Core {
                     let result = self.compute_words(block, environment);
                     self.read_again_after(result, environment)?;
                 }
-                self.execute(block, environment)?;
+                let plain = if self.is_plain { self.plain(block) } else { None };
+                self.execute(block, plain, environment)?;
                 if self.frames.is_empty() { Ok(()) } else { Ok(self.after_block(environment)?) }
             }
         }
@@ -138,18 +139,18 @@ impl Core {
             match *kept {
                 Kept::Statement(statement) => self.run_statement(&statement, environment)?,
                 Kept::Blank => self.go_on(environment)?,
-                Kept::Words { first, count, computes } => {
+                Kept::Words { first, count, computed, plain } => {
                     self.cache.refill(block, first, count);
                     self.count_idle(limits::IDLE_WORD_BLOCKS)?;
-                    if computes {
+                    if !computed.is_empty() {
                         self.macros.word_values.clear();
                         let may_be_passed = !self.is_plain || crate::plain::has_other_words(block);
-                        block.resolve(|word, place| {
+                        block.resolve_at(computed, |word, place| {
                             let code = self.cache.code(first, place);
                             self.word_value(word, code, may_be_passed, environment)
                         })?;
                     }
-                    self.execute(block, environment)?;
+                    self.execute(block, plain, environment)?;
                     if self.cache.current == Some(id) {
                         self.go_on(environment)?;
                     }
@@ -310,8 +311,9 @@ impl Core {
         } else {
             let mut codes = Vec::new();
             self.compile_words(block, &mut codes)?;
+            let plain = self.plain(block);
             let frame = self.kept_frame(block, start, behind);
-            self.cache.keep_words(block, &codes, frame.of(self.text.bytes(&self.line)))
+            self.cache.keep_words(block, &codes, plain, frame.of(self.text.bytes(&self.line)))
         };
         if id.is_none() {
             self.macros.machine.forget(mark);

@@ -220,8 +220,22 @@ impl Block {
         &mut self,
         mut value: impl FnMut(&Word, usize) -> Result<Resolved, E>,
     ) -> Result<(), E> {
+        self.resolve_at(0..self.words.len(), |word, place| value(word, place))
+    }
+
+    /// As [`Block::resolve`], for the words at some places.
+    ///
+    /// # Errors
+    /// As there.
+    #[inline]
+    pub fn resolve_at<E>(
+        &mut self,
+        places: impl Iterator<Item = usize>,
+        mut value: impl FnMut(&Word, usize) -> Result<Resolved, E>,
+    ) -> Result<(), E> {
         let mut has_gaps = false;
-        for (place, word) in self.words.iter_mut().enumerate() {
+        for place in places {
+            let Some(word) = self.words.get_mut(place) else { break };
             match value(word, place)? {
                 Resolved::Number(number) => word.value = Value::Number(number),
                 Resolved::Absent => {

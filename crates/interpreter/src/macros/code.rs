@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use turnwright_syntax::{BinaryOperator, Comparison, Expression, Function, Node};
 
-use super::arithmetic::{Arithmetic, CodeFault, Rules, divide};
+use super::arithmetic::{Arithmetic, CodeFault, Rules};
 use super::names;
 use super::variables::{LOCALS, NULL, Variables, is_null, number};
 
@@ -78,6 +78,11 @@ impl Code {
     pub(crate) const NONE: Self = Self { start: 0, end: 0 };
     /// What stands there is no expression but a name.
     pub(crate) const NAME: Self = Self { start: u32::MAX, end: u32::MAX };
+
+    /// Whether it is the code of an expression.
+    pub(crate) fn computes(self) -> bool {
+        self != Self::NONE && self != Self::NAME
+    }
 
     #[inline]
     const fn is_one_operation(self) -> bool {
@@ -317,41 +322,54 @@ impl Machine {
                     self.at += place + 1;
                     return Outcome::AxisNumber(letter);
                 }
-                Op::AddConstant(constant) => Ok(value + constant),
-                Op::AddSlot(place) => Ok(value + slot(place)),
-                Op::SubtractConstant(constant) => Ok(value - constant),
-                Op::SubtractSlot(place) => Ok(value - slot(place)),
-                Op::SubtractFromConstant(constant) => Ok(constant - value),
-                Op::SubtractFromSlot(place) => Ok(slot(place) - value),
-                Op::MultiplyConstant(constant) => Ok(value * constant),
-                Op::MultiplySlot(place) => Ok(value * slot(place)),
-                Op::SlotPlusConstant(place, constant) => Ok(slot(place) + constant),
-                Op::SlotTimesConstant(place, constant) => Ok(slot(place) * constant),
-                Op::DivideConstant(divisor) => divide(value, divisor),
-                Op::DivideSlot(place) => divide(value, slot(place)),
+                Op::AddConstant(constant) => value + constant,
+                Op::AddSlot(place) => value + slot(place),
+                Op::SubtractConstant(constant) => value - constant,
+                Op::SubtractSlot(place) => value - slot(place),
+                Op::SubtractFromConstant(constant) => constant - value,
+                Op::SubtractFromSlot(place) => slot(place) - value,
+                Op::MultiplyConstant(constant) => value * constant,
+                Op::MultiplySlot(place) => value * slot(place),
+                Op::SlotPlusConstant(place, constant) => slot(place) + constant,
+                Op::SlotTimesConstant(place, constant) => slot(place) * constant,
+                Op::DivideConstant(divisor) if divisor != 0.0 => value / divisor,
+                Op::DivideSlot(place) if slot(place) != 0.0 => value / slot(place),
+                Op::DivideConstant(_) | Op::DivideSlot(_) => {
+                    return self.fault(CodeFault::DivideByZero, place);
+                }
                 Op::Binary(operator) => {
                     self.depth -= 1;
-                    self.arithmetic.binary(operator, self.stack[self.depth], value)
+                    match self.arithmetic.binary(operator, self.stack[self.depth], value) {
+                        Ok(result) => result,
+                        Err(fault) => return self.fault(fault, place),
+                    }
                 }
-                Op::Call(function) => self.arithmetic.call(function, number(value)),
+                Op::Call(function) => match self.arithmetic.call(function, number(value)) {
+                    Ok(result) => result,
+                    Err(fault) => return self.fault(fault, place),
+                },
                 Op::CallTwo(function) => {
                     self.depth -= 1;
-                    self.arithmetic.call_two(function, self.stack[self.depth], number(value))
+                    match self.arithmetic.call_two(function, self.stack[self.depth], number(value)) {
+                        Ok(result) => result,
+                        Err(fault) => return self.fault(fault, place),
+                    }
                 }
             };
-            let fault = match result {
-                Ok(result) if within(result, limit) => {
-                    value = result;
-                    continue;
-                }
-                Ok(_) => CodeFault::Overflow,
-                Err(fault) => fault,
-            };
-            self.at += place + 1;
-            return Outcome::Fault(fault);
+            if !within(result, limit) {
+                return self.fault(CodeFault::Overflow, place);
+            }
+            value = result;
         }
         self.at = self.end;
         Outcome::Value(value)
+    }
+
+    /// The operation at a place behind the present one has no value.
+    #[cold]
+    fn fault(&mut self, fault: CodeFault, place: usize) -> Outcome {
+        self.at += place + 1;
+        Outcome::Fault(fault)
     }
 }
 

@@ -246,7 +246,7 @@ impl Core {
         may_be_passed: bool,
         environment: &mut dyn Environment,
     ) -> Result<Resolved, Halt> {
-        if code == Code::NONE || code == Code::NAME {
+        if !code.computes() {
             return Ok(Resolved::AsWritten);
         }
         let value = match self.macros.machine.at_once(code, &self.macros.variables) {
