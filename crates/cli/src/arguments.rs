@@ -62,6 +62,7 @@ pub(crate) enum Command {
     Check(Check),
     Trace(Trace),
     Plot(Plot),
+    Motion(Motion),
     Explain(Explain),
     Controls(Controls),
     Data(Data),
@@ -216,6 +217,25 @@ pub(crate) struct Plot {
     pub(crate) machine: Machine,
 }
 
+/// Writes where the axes are at every tick, with acceleration and jerk, as a table (CSV).
+///
+/// Lengths are millimetres, X is a diameter, places are those of the tool tip in work coordinates. In polar and
+/// cylindrical interpolation X and V are those of the virtual plane.
+#[derive(Debug, Args)]
+#[command(after_long_help = examples("motion"))]
+pub(crate) struct Motion {
+    /// The program; - for standard input
+    pub(crate) file: PathBuf,
+    /// Ticks a second
+    #[arg(long, value_name = "HZ", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) rate: u32,
+    /// The table; - for standard output
+    #[arg(short, long, value_name = "OUT.csv", value_hint = clap::ValueHint::FilePath)]
+    pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) machine: Machine,
+}
+
 /// Says what a G or M code, an alarm or a parameter means, or what each pass of a cycle does and why.
 #[derive(Debug, Args)]
 #[command(after_long_help = examples("explain"))]
@@ -329,8 +349,8 @@ pub(crate) struct Man {
 }
 
 /// The commands that have a page.
-const COMMAND_NAMES: [&str; 10] =
-    ["run", "check", "trace", "plot", "explain", "controls", "data", "setup", "completions", "man"];
+const COMMAND_NAMES: [&str; 11] =
+    ["run", "check", "trace", "plot", "motion", "explain", "controls", "data", "setup", "completions", "man"];
 
 /// A text of the help, in the language of the environment: the options are not known yet.
 fn text(key: &'static str) -> &'static str {

@@ -22,6 +22,8 @@ pub(crate) struct Execution<'a> {
     denies_warnings: bool,
     alarm: Option<Diagnostic>,
     early: Option<Diagnostic>,
+    /// Warnings of those who looked at the commands.
+    added: Vec<Diagnostic>,
     /// Number of the program that gave the last command.
     program: Option<u32>,
     /// Where lines that the program prints go, besides the trace.
@@ -81,6 +83,7 @@ impl<'a> Execution<'a> {
             denies_warnings: machine.deny == Some(Deny::Warnings),
             alarm: None,
             early: session.warning.clone(),
+            added: Vec::new(),
             program: None,
             output: machine.program_output.as_deref().map(ProgramOutput::create).transpose()?,
         })
@@ -149,8 +152,15 @@ impl<'a> Execution<'a> {
     pub(crate) fn take_warnings(&mut self) -> Vec<Finding> {
         let fault = self.output.as_mut().and_then(ProgramOutput::finish);
         let early = self.early.take();
-        let warnings: Vec<Diagnostic> = early.into_iter().chain(self.interpreter.take_warnings()).collect();
+        let added = std::mem::take(&mut self.added);
+        let warnings: Vec<Diagnostic> =
+            early.into_iter().chain(self.interpreter.take_warnings()).chain(added).collect();
         warnings.into_iter().map(|warning| self.finding(warning)).chain(fault).collect()
+    }
+
+    /// Adds a warning about the commands.
+    pub(crate) fn warn(&mut self, warning: Diagnostic) {
+        self.added.push(warning);
     }
 
     /// Everything found and not yet taken, in the order of the lines; the alarm is the last.

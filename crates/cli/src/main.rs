@@ -14,6 +14,7 @@ mod fault;
 mod finding;
 mod output;
 mod passes;
+mod rates;
 mod render;
 mod report;
 mod session;

@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn every_estimate_and_kind_has_a_sentence() {
-        for key in turnwright_motion::ESTIMATES {
+        for key in turnwright_motion::ESTIMATES.iter().chain(turnwright_motion::ESTIMATES_WITH_DYNAMICS) {
             assert!(TEXTS.contains_key(&format!("estimate-{key}")), "{key}");
         }
     }

@@ -191,6 +191,41 @@ fn plot_writes_the_picture_that_its_name_asks_for() {
 }
 
 #[test]
+fn motion_is_a_table_that_ends_where_the_program_does() {
+    let folder = Folder::new();
+    let program = folder.file("part.nc", CLEAN);
+    let ran = turnwright(&["motion", &program, "--rate", "200"]);
+    assert_eq!(ran.status, 0, "{}", ran.err);
+    let mut lines = ran.out.lines();
+    assert_eq!(lines.next(), Some("time_s,x_mm,z_mm,path_mm_per_s,rpm,turns,kind,line"));
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    // Five milliseconds apart, and at the end on X60 Z5 with 500 rpm, the rapid of line 6.
+    assert_eq!((rows[1][0], rows[2][0]), ("0.005", "0.01"));
+    let last = rows.iter().rev().find(|row| row[6] == "rapid").expect("a rapid");
+    assert_eq!((last[1], last[2], last[4], last[7]), ("60", "5", "500", "6"));
+    let table = folder.path("samples.csv");
+    let ran = turnwright(&["motion", &program, "--rate", "200", "-o", &table.display().to_string()]);
+    assert_eq!((ran.status, ran.out.as_str()), (0, ""));
+    assert_eq!(std::fs::read_to_string(&table).expect("the table").lines().count(), rows.len() + 1);
+    assert_eq!(turnwright(&["motion", &program, "--rate", "0"]).status, 2);
+}
+
+#[test]
+fn a_thread_with_a_short_lead_in_is_told_what_it_needs() {
+    // Lead 1.5 at 1200 rpm: 3.6 mm for a lead that is right to a hundredth.
+    let folder = Folder::new();
+    let thread = |z: &str, rpm: &str| {
+        format!("O0001\nT0101\nG97 S{rpm} M03\nG00 X20. Z{z}\nG32 Z-20. F1.5\nG00 X30.\nM30\n")
+    };
+    let short = turnwright(&["run", &folder.file("a.nc", thread("2.", "1200")), "--format", "json"]);
+    assert!(short.out.contains("it needs 3.6 mm in front of Z0 and has 2.0 mm"), "{}", short.out);
+    for (z, rpm) in [("4.", "1200"), ("2.", "600")] {
+        let fine = turnwright(&["run", &folder.file("b.nc", thread(z, rpm)), "--format", "json"]);
+        assert!(!fine.out.contains("in front of Z0"), "{}", fine.out);
+    }
+}
+
+#[test]
 fn standard_input_is_a_program() {
     let ran = turnwright_with_input(&["check", "-", "--format", "json"], ALARMS.as_bytes());
     assert_eq!(ran.status, 1);

@@ -67,6 +67,12 @@ pub struct Machine {
     pub rapid_x_mm_per_min: f64,
     pub rapid_z_mm_per_min: f64,
     pub cutting_max_mm_per_min: f64,
+    pub acceleration_x_mm_per_s2: f64,
+    pub acceleration_z_mm_per_s2: f64,
+    pub jerk_x_mm_per_s3: f64,
+    pub jerk_z_mm_per_s3: f64,
+    pub corner_s: f64,
+    pub in_position_s: f64,
     pub tool_change_s: f64,
     pub spindle_ramp_rpm_per_s: f64,
     pub auxiliary_s: f64,
@@ -101,6 +107,12 @@ pub struct RotaryAxis {
     pub rapid_deg_per_min: f64,
     /// It turns no faster while it cuts, degrees per minute.
     pub cutting_max_deg_per_min: f64,
+    /// Acceleration, degrees/s².
+    #[serde(default = "rotary_acceleration")]
+    pub acceleration_deg_per_s2: f64,
+    /// Jerk, degrees/s³.
+    #[serde(default = "rotary_jerk")]
+    pub jerk_deg_per_s3: f64,
     /// Its reference point, degrees.
     #[serde(default)]
     pub reference_deg: f64,
@@ -128,6 +140,12 @@ pub struct LinearAxis {
     pub number: u8,
     /// Rapid traverse, mm per minute.
     pub rapid_mm_per_min: f64,
+    /// Acceleration, mm/s².
+    #[serde(default = "linear_acceleration")]
+    pub acceleration_mm_per_s2: f64,
+    /// Jerk, mm/s³.
+    #[serde(default = "linear_jerk")]
+    pub jerk_mm_per_s3: f64,
     /// Its reference point, mm.
     #[serde(default)]
     pub reference_mm: f64,
@@ -135,6 +153,22 @@ pub struct LinearAxis {
 
 fn full_turn() -> f64 {
     360.0
+}
+
+fn rotary_acceleration() -> f64 {
+    1_000.0
+}
+
+fn rotary_jerk() -> f64 {
+    20_000.0
+}
+
+fn linear_acceleration() -> f64 {
+    2_000.0
+}
+
+fn linear_jerk() -> f64 {
+    100_000.0
 }
 
 impl MachineAxes {
@@ -162,6 +196,8 @@ impl MachineAxes {
             let Some(axis) = axis else { continue };
             let is_sound = positive(axis.rapid_deg_per_min)
                 && positive(axis.cutting_max_deg_per_min)
+                && positive(axis.acceleration_deg_per_s2)
+                && positive(axis.jerk_deg_per_s3)
                 && positive(axis.turn_deg)
                 && axis.turn_deg <= 1e6
                 && axis.reference_deg.abs() <= 1e6;
@@ -172,10 +208,12 @@ impl MachineAxes {
                 return Some(format!("axes.{name}: parallel is 5 (to X) or 6 (to Y)"));
             }
         }
-        let y_is_sound = self
-            .y
-            .as_ref()
-            .is_none_or(|axis| positive(axis.rapid_mm_per_min) && axis.reference_mm.abs() <= 1e6);
+        let y_is_sound = self.y.as_ref().is_none_or(|axis| {
+            positive(axis.rapid_mm_per_min)
+                && positive(axis.acceleration_mm_per_s2)
+                && positive(axis.jerk_mm_per_s3)
+                && axis.reference_mm.abs() <= 1e6
+        });
         (!y_is_sound).then(|| "axes.y: the rate must be greater than zero".to_string())
     }
 }
@@ -599,9 +637,18 @@ impl Setup {
             machine.rapid_z_mm_per_min,
             machine.cutting_max_mm_per_min,
             machine.spindle_ramp_rpm_per_s,
+            machine.acceleration_x_mm_per_s2,
+            machine.acceleration_z_mm_per_s2,
+            machine.jerk_x_mm_per_s3,
+            machine.jerk_z_mm_per_s3,
+            machine.corner_s,
         ];
         if positive.iter().any(|rate| !rate.is_finite() || *rate <= 0.0) {
             return Err(SetupFault { message: "rates must be greater than zero".to_string(), line: 0 });
+        }
+        if machine.corner_s > 1.0 || !(0.0..=60.0).contains(&machine.in_position_s) {
+            let message = "corner_s is at most 1, in_position_s from 0 to 60".to_string();
+            return Err(SetupFault { message, line: 0 });
         }
         match machine.axes.fault() {
             Some(message) => Err(SetupFault { message, line: 0 }),

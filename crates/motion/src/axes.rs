@@ -9,6 +9,7 @@ use turnwright_geometry::Point;
 use turnwright_units::{Angle, Length, Position, WorkTip};
 
 use crate::MachineRates;
+use crate::leg::{B, C, Place, V, Y};
 use crate::path::ArcPath;
 
 /// Where the axes beyond X and Z are.
@@ -31,6 +32,11 @@ pub(crate) struct AxisWay {
 }
 
 impl AxisPlaces {
+    /// Their places among those of all axes; X and Z are not known here.
+    pub(crate) fn places(&self) -> Place {
+        [0.0, 0.0, self.y.to_mm(), self.c.to_degrees(), self.b.to_degrees(), self.v.to_mm()]
+    }
+
     /// New meaning of the coordinates; the virtual axis begins where the next move or the rotary axis says.
     pub(crate) fn interpolate(&mut self, interpolation: Interpolation) {
         self.v = match interpolation {
@@ -109,11 +115,16 @@ impl AxisPlaces {
         let side_mm = self.side_mm(others);
         let length_mm = libm::hypot(length_mm, side_mm);
         let side_rate = if others.v.is_some() { rates.rapid_x_mm_per_min } else { rates.rapid_y_mm_per_min };
+        let side = if others.v.is_some() { V } else { Y };
         let minutes_min = [
-            at_rate(side_mm, side_rate),
-            at_rate(Self::degrees(self.c, others.c), rates.rapid_c_deg_per_min),
-            at_rate(Self::degrees(self.b, others.b), rates.rapid_b_deg_per_min),
+            (side, side_mm, side_rate),
+            (C, Self::degrees(self.c, others.c), rates.rapid_c_deg_per_min),
+            (B, Self::degrees(self.b, others.b), rates.rapid_b_deg_per_min),
         ]
+        .map(|(axis, way, rate)| match &rates.dynamics {
+            Some(dynamics) if way > 0.0 => dynamics.axes[axis].minutes(way, rate),
+            _ => at_rate(way, rate),
+        })
         .into_iter()
         .try_fold(0.0, |longest: f64, minutes| Some(longest.max(minutes?)));
         AxisWay { length_mm, feed_mm: length_mm, minutes_min }

@@ -10,6 +10,8 @@ use turnwright_canon::{Action, Command, Dwell, OtherAxes, RapidPath, Shape};
 use turnwright_units::{Feed, Lead, Position, WorkTip};
 
 use crate::axes::AxisPlaces;
+use crate::dynamics::Dynamics;
+use crate::leg::{Place, X, Z};
 use crate::path::{ArcPath, point, stretches};
 use crate::spindle::{Order, Spindle};
 use crate::surface::Slowness;
@@ -159,6 +161,41 @@ impl Clock {
         self.unknown_feeds
     }
 
+    pub(crate) const fn axes(&self) -> &AxisPlaces {
+        &self.axes
+    }
+
+    pub(crate) const fn rates(&self) -> &MachineRates {
+        &self.rates
+    }
+
+    pub(crate) const fn spindle(&self) -> &Spindle {
+        &self.spindle
+    }
+
+    pub(crate) const fn spindle_order(&self) -> Order {
+        self.spindle.order
+    }
+
+    /// Rapid traverse of each axis, per minute.
+    pub(crate) const fn rapid_rates(&self) -> Place {
+        let rates = &self.rates;
+        let (x, z, y) = (rates.rapid_x_mm_per_min, rates.rapid_z_mm_per_min, rates.rapid_y_mm_per_min);
+        [x, z, y, rates.rapid_c_deg_per_min, rates.rapid_b_deg_per_min, x]
+    }
+
+    /// Whether a cut from here would wait for the spindle.
+    pub(crate) fn would_wait(&self) -> bool {
+        let mut spindle = self.spindle;
+        spindle.aim(spindle.order.rpm_at(self.position.x.to_mm()));
+        spindle.seconds_to_target() > 0.0
+    }
+
+    /// In the cuts so far the spindle could not follow the diameter: it turns at `rpm`.
+    pub(crate) fn lag_behind(&mut self, rpm: f64) {
+        self.spindle.turn_at(rpm);
+    }
+
     /// Measures the next command.
     pub fn advance(&mut self, command: &Command) -> Timing {
         let timing = match &command.action {
@@ -168,7 +205,7 @@ impl Clock {
                 if !is_chained {
                     self.thread_rpm = None;
                 }
-                self.thread(*to, shape, *lead, lead_end.as_deref().copied().unwrap_or(*lead))
+                self.thread(*to, shape, [*lead, lead_end.as_deref().copied().unwrap_or(*lead)], *is_chained)
             }
             Action::Dwell(dwell) => self.dwell(*dwell),
             Action::Spindle { state, speed, rpm_max } => {
@@ -237,7 +274,8 @@ impl Clock {
         let way = to - self.position;
         let (dx_mm, dz_mm) = (way.x.to_mm().abs(), way.z.to_mm().abs());
         let (rate_x, rate_z) = (self.rates.rapid_x_mm_per_min, self.rates.rapid_z_mm_per_min);
-        let (minutes, length_mm) = match (minutes(dx_mm, rate_x), minutes(dz_mm, rate_z)) {
+        let at_rates = (minutes(dx_mm, rate_x), minutes(dz_mm, rate_z));
+        let (minutes, length_mm) = match at_rates {
             (Some(x), Some(z)) => {
                 let length_mm = match path {
                     RapidPath::Straight => libm::hypot(dx_mm, dz_mm),
@@ -263,6 +301,13 @@ impl Clock {
                 (longer(minutes, way.minutes_min), way.length_mm)
             }
         };
+        let minutes = match &self.rates.dynamics {
+            // At a rate that is none, the time is as little known as without.
+            Some(dynamics) if minutes.is_some() && length_mm > 0.0 => {
+                self.rapid_minutes(dynamics, [dx_mm, dz_mm], path, others)
+            }
+            _ => minutes,
+        };
         let way = self.known_minutes(minutes, length_mm);
         let before = self.spindle.target_rpm();
         let after = self.spindle.order.rpm_at(to.x.to_mm());
@@ -283,6 +328,31 @@ impl Clock {
             length_mm: way.length_mm,
             rpm: turning(RpmRange::between(before, after)),
         }
+    }
+
+    /// Minutes of a rapid from rest to rest and into position.
+    fn rapid_minutes(
+        &self,
+        dynamics: &Dynamics,
+        [dx_mm, dz_mm]: [f64; 2],
+        path: RapidPath,
+        others: Option<&OtherAxes>,
+    ) -> Option<f64> {
+        let (rate_x, rate_z) = (self.rates.rapid_x_mm_per_min, self.rates.rapid_z_mm_per_min);
+        let section = match path {
+            RapidPath::EachAxis => {
+                longer(dynamics.axes[X].minutes(dx_mm, rate_x), dynamics.axes[Z].minutes(dz_mm, rate_z))
+            }
+            RapidPath::Straight => {
+                let length_mm = libm::hypot(dx_mm, dz_mm);
+                let (x, z) = (dx_mm / length_mm, dz_mm / length_mm);
+                let per_second = (rate_x / 60.0 / x).min(rate_z / 60.0 / z);
+                let limits = dynamics.straight(&[x, z, 0.0, 0.0, 0.0, 0.0]);
+                Some(if length_mm > 0.0 { limits.rest_to_rest_s(length_mm, per_second) / 60.0 } else { 0.0 })
+            }
+        };
+        let others = others.map_or(Some(0.0), |others| self.axes.rapid(0.0, others, &self.rates).minutes_min);
+        longer(section, others).map(|minutes| minutes + dynamics.in_position_s / 60.0)
     }
 
     fn cut(
@@ -367,7 +437,25 @@ impl Clock {
         seconds
     }
 
-    fn thread(&mut self, to: Position<WorkTip>, shape: &Shape, lead: Lead, lead_end: Lead) -> Timing {
+    /// Minutes that a thread takes beyond its turns: half a turn, on average, for the start angle to come round, and
+    /// half of each ramp. Of a chain they are counted at its start.
+    fn thread_start_minutes(&self, [dx_mm, dz_mm]: [f64; 2], lead: Lead, rpm: f64) -> f64 {
+        let Some(dynamics) = self.rates.dynamics.filter(|_| rpm > 0.0) else { return 0.0 };
+        let long_mm = dx_mm.max(dz_mm);
+        if long_mm == 0.0 {
+            return 0.0;
+        }
+        let limits = dynamics.threading(&[dx_mm / long_mm, dz_mm / long_mm, 0.0, 0.0, 0.0, 0.0]);
+        0.5 / rpm + limits.ramp_s(lead.0.to_mm() * rpm / 60.0) / 60.0
+    }
+
+    fn thread(
+        &mut self,
+        to: Position<WorkTip>,
+        shape: &Shape,
+        [lead, lead_end]: [Lead; 2],
+        is_chained: bool,
+    ) -> Timing {
         let way = to - self.position;
         let (dx_mm, dz_mm) = (way.x.to_mm().abs(), way.z.to_mm().abs());
         let rpm = self.thread_rpm.unwrap_or_else(|| self.spindle.order.rpm_at(self.position.x.to_mm()));
@@ -376,7 +464,9 @@ impl Clock {
         // A lead that changes evenly with the turns covers the way in as many turns as its mean does.
         let mean_lead_mm = (lead.0.to_mm() + lead_end.0.to_mm()) / 2.0;
         let length_mm = stretches(self.position, to, shape).map(|piece| piece.length_mm()).sum();
-        let known = self.known_minutes(minutes(dx_mm.max(dz_mm), mean_lead_mm * rpm), length_mm);
+        let cutting = minutes(dx_mm.max(dz_mm), mean_lead_mm * rpm);
+        let starting = if is_chained { 0.0 } else { self.thread_start_minutes([dx_mm, dz_mm], lead, rpm) };
+        let known = self.known_minutes(cutting.map(|minutes| minutes + starting), length_mm);
         Timing {
             kind: Kind::Threading,
             from: self.position,

@@ -9,22 +9,41 @@
 //! the only error is that of floating point (relative [`TIME_TOLERANCE`]; spirals [`SPIRAL_TOLERANCE`]). Ellipses and
 //! parabolas are measured as arcs that stay within a hundredth of a micrometre of them.
 //!
-//! This first model knows no acceleration of the axes: what it leaves out or assumes is named in
-//! [`ESTIMATES`], so that a report can say so. Deliberately not here: text, alarms, look-ahead.
+//! With [`Dynamics`] the axes have acceleration and jerk: a [`Schedule`] plans the cuts ahead ([`planner`]). What the
+//! times leave out or assume is named in [`ESTIMATES`] and [`ESTIMATES_WITH_DYNAMICS`], so that a report can say so.
+//! Deliberately not here: text, alarms.
 
 mod axes;
 mod clock;
+mod corners;
+mod dynamics;
+mod feedrate;
+mod leg;
+mod orders;
 mod path;
+pub mod planner;
+mod player;
 mod rates;
+mod run;
+mod schedule;
+mod smoother;
 mod spindle;
 mod summary;
 mod surface;
+mod thread;
+mod thread_chain;
 
 pub use clock::{Clock, Kind, RpmRange, Timing, Totals};
+pub use dynamics::{AXIS_COUNT, AxisDynamics, CORNER_S_MAX, Dynamics};
+pub use leg::Place;
 pub use path::ArcPath;
+pub use player::{Panel, Player, Sample};
 pub use rates::{MachineRates, RapidSurfaceSpeed};
+pub use run::LEGS_MAX;
+pub use schedule::Schedule;
 pub use spindle::RPM_FENCE;
 pub use summary::{Extents, OPERATIONS_MAX, Operation, OperationKind, Summary};
+pub use thread::{ShortLeadIn, ThreadFault, ThreadPlan, ThreadStretch, lead_in_needed_mm};
 
 /// Relative error of the seconds of lines, circles, threads, rapids and dwells against the model they follow.
 pub const TIME_TOLERANCE: f64 = 1e-9;
@@ -46,5 +65,17 @@ pub const ESTIMATES: &[&str] = &[
     // The wait for the one-turn signal before a thread, half a turn on average, is not counted.
     "thread-start-left-out",
     // Stops count no time: they last as long as the operator wants.
+    "stops-left-out",
+];
+
+/// As [`ESTIMATES`], when the machine has [`Dynamics`].
+pub const ESTIMATES_WITH_DYNAMICS: &[&str] = &[
+    // Acceleration and jerk are those of the machine file; the drives follow without delay.
+    "axis-acceleration-of-machine",
+    "tool-change-constant",
+    "spindle-ramp-linear",
+    "auxiliary-constant",
+    // The start angle of a thread comes round after half a turn.
+    "thread-start-half-turn",
     "stops-left-out",
 ];

@@ -55,8 +55,14 @@ impl ArcPath {
     }
 
     /// Distance from the centre after `share` (0 to 1) of the sweep, mm.
-    fn radius_at(&self, share: f64) -> f64 {
+    pub(crate) fn radius_at(&self, share: f64) -> f64 {
         self.start_radius_mm + (self.end_radius_mm - self.start_radius_mm) * share
+    }
+
+    /// The point after `share` (0 to 1) of the sweep.
+    pub(crate) fn point(&self, share: f64) -> Point {
+        let (angle, radius) = (self.start_rad + self.sweep_rad * share, self.radius_at(share));
+        Point::new(self.centre.x + radius * libm::sin(angle), self.centre.z + radius * libm::cos(angle))
     }
 
     /// Pieces of constant radius that stand for this arc: 1 for a circle.

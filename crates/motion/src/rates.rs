@@ -2,6 +2,8 @@
 
 use turnwright_units::Rpm;
 
+use crate::Dynamics;
+
 /// Which speed constant surface speed asks for during a rapid move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum RapidSurfaceSpeed {
@@ -44,6 +46,8 @@ pub struct MachineRates {
     pub rpm_min_surface: u32,
     /// What the spindle does in rapid moves while it follows the diameter.
     pub rapid_surface_speed: RapidSurfaceSpeed,
+    /// What the axes can do beyond their rates; `None`: they reach their rates at once.
+    pub dynamics: Option<Dynamics>,
 }
 
 impl Default for MachineRates {
@@ -62,6 +66,7 @@ impl Default for MachineRates {
             rpm_max: Some(Rpm(4_000)),
             rpm_min_surface: 20,
             rapid_surface_speed: RapidSurfaceSpeed::AtEndPoint,
+            dynamics: None,
         }
     }
 }
@@ -86,6 +91,7 @@ impl MachineRates {
         ]
         .into_iter()
         .find_map(|(key, sound)| (!sound).then_some(key))
+        .or_else(|| self.dynamics.and_then(|dynamics| dynamics.first_fault()))
     }
 }
 

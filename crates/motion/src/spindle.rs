@@ -53,6 +53,26 @@ impl Order {
     }
 }
 
+/// Speed and angle of the spindle, tick by tick.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SpindleAngle {
+    /// rpm, negative counter-clockwise.
+    pub(crate) rpm: f64,
+    /// Turns since the start, either way.
+    pub(crate) turns: f64,
+}
+
+impl SpindleAngle {
+    /// Turns for a while towards a speed.
+    pub(crate) fn turn(&mut self, rpm: f64, ramp_rpm_per_s: f64, seconds: f64) {
+        let before = self.rpm;
+        let change = ramp_rpm_per_s * seconds;
+        let is_near = ramp_rpm_per_s == 0.0 || (rpm - before).abs() <= change;
+        self.rpm = if is_near { rpm } else { before + change.copysign(rpm - before) };
+        self.turns += (before + self.rpm).abs() / 2.0 / 60.0 * seconds;
+    }
+}
+
 /// The spindle in time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spindle {
@@ -146,6 +166,26 @@ impl Spindle {
             self.aim(law.rpm_at(start_x_mm + (end_x_mm - start_x_mm) * part));
             self.run(seconds / f64::from(CHASE_STEPS));
         }
+    }
+
+    /// Real speed, rpm.
+    pub(crate) fn actual_rpm(&self) -> f64 {
+        self.actual_rpm.abs()
+    }
+
+    /// Speed asked for at a distance from the axis (mm), rpm with the sign of its direction.
+    pub(crate) fn wanted_rpm(&self, x_mm: f64) -> f64 {
+        self.direction * self.order.rpm_at(x_mm)
+    }
+
+    /// Change of speed, rpm per second; 0 for at once.
+    pub(crate) const fn ramp_rpm_per_s(&self) -> f64 {
+        self.ramp_rpm_per_s
+    }
+
+    /// The spindle turns at `rpm`, whatever is asked for.
+    pub(crate) fn turn_at(&mut self, rpm: f64) {
+        self.actual_rpm = self.direction * rpm;
     }
 
     /// The spindle turns at `rpm`: it has followed a cut.

@@ -10,7 +10,7 @@ use crate::path::{Circle, Stretch, way_to};
 use crate::spindle::SurfaceLaw;
 
 /// Minutes that a millimetre of path takes, as a function of the distance from the axis.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Slowness {
     /// Growth with the distance from the axis, min/mm per mm.
     per_mm: f64,
@@ -35,7 +35,7 @@ impl Slowness {
     }
 
     /// Minutes per millimetre at `x_mm`.
-    fn at(self, x_mm: f64) -> f64 {
+    pub(crate) fn at(self, x_mm: f64) -> f64 {
         (x_mm.abs() * self.per_mm).clamp(self.min, self.max)
     }
 

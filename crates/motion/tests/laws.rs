@@ -362,6 +362,7 @@ fn nothing_makes_a_time_that_is_no_number() {
             rpm_max: None,
             rpm_min_surface: 0,
             rapid_surface_speed: RapidSurfaceSpeed::AtPresentPoint,
+            dynamics: None,
         };
         let mut clock = Clock::new(at(10.0, 10.0), rates);
         let mut summary = Summary::new();

@@ -5,6 +5,7 @@ mod controls;
 mod data;
 mod explain;
 mod generate;
+mod motion;
 mod passes;
 mod plot;
 mod run;
@@ -22,6 +23,7 @@ pub(crate) fn run(arguments: &Arguments, printer: &Printer) -> Result<Status, Fa
         Command::Check(options) => check::run(options, printer),
         Command::Trace(options) => trace::run(options, printer),
         Command::Plot(options) => plot::run(options, printer),
+        Command::Motion(options) => motion::run(options, printer),
         Command::Explain(options) => explain::run(options, printer),
         Command::Controls(options) => controls::run(options, printer),
         Command::Data(options) => data::run(options, printer),
@@ -42,6 +44,6 @@ pub(crate) fn format(arguments: &Arguments) -> Format {
         Command::Explain(options) => lookup(options.format),
         Command::Controls(options) => lookup(options.format),
         Command::Data(options) => lookup(options.format),
-        Command::Trace(_) | Command::Completions(_) | Command::Man(_) => Format::Human,
+        Command::Trace(_) | Command::Motion(_) | Command::Completions(_) | Command::Man(_) => Format::Human,
     }
 }

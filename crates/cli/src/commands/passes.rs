@@ -96,9 +96,10 @@ fn draw(
     for index in 0..end {
         let Some(command) = execution.next_command() else { break };
         if index >= start && is_of_pass(&command) {
-            drawn.add(&command);
+            drawn.add(command);
         }
     }
+    drawn.finish();
     let Some(path) = drawn.path else { return Ok(()) };
     let marks = cycle.passes.iter().map(|pass| Mark::new(pass.from, pass.number.to_string())).collect();
     let language = picture_language(speech.language);

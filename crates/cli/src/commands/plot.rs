@@ -32,8 +32,9 @@ pub(crate) fn run(options: &Plot, printer: &Printer) -> Result<Status, Fault> {
     let mut measure =
         Measure::new(execution.interpreter().position(), &machine, &session.control.parameters, true);
     while let Some(command) = execution.next_command() {
-        measure.add(&command);
+        measure.add(command);
     }
+    measure.finish();
     let Some(path) = measure.path else { return Ok(Status::Failed) };
     let title = options.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let language = picture_language(speech.language);

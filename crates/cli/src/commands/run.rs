@@ -55,7 +55,6 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     let mut progress = Progress::new(&text, printer);
     let decimals = execution.interpreter().decimals();
     while let Some(command) = execution.next_command() {
-        measure.add(&command);
         inference.add(&command);
         if let Some(folder) = &mut folder {
             write_json(&mut folder.buffer, &command, decimals, &execution);
@@ -64,8 +63,11 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         if let Some(passes) = &mut passes {
             passes.add(&command, &execution);
         }
+        measure.add(command);
         progress.look(&execution);
     }
+    measure.finish();
+    measure.warnings().for_each(|warning| execution.warn(warning));
     progress.finish();
 
     let inferred = inference.finish(&session.setup);

@@ -36,7 +36,7 @@ impl RunReport {
         out.push('\n');
         out.push_str(&heading(speech.get("estimated")));
         out.push('\n');
-        for (_, sentence) in estimates(speech) {
+        for (_, sentence) in estimates(&self.measure, speech) {
             out.push_str(&format!("  - {sentence}\n"));
         }
         if !self.assumptions.is_empty() {
@@ -101,7 +101,7 @@ impl RunReport {
         if let Some(rpm) = summary.rpm() {
             rows.push((label("spindle"), rpm_text(rpm.min, rpm.max)));
         }
-        let totals = self.measure.clock.totals();
+        let totals = self.measure.summary.totals();
         let parts: Vec<String> = TIME_PARTS
             .iter()
             .filter(|(kind, _)| totals.seconds(*kind) > 0.0)
@@ -117,8 +117,8 @@ impl RunReport {
         if !parts.is_empty() {
             time = format!("{time}\n{}", parts.join(speech.get("list-comma")));
         }
-        if self.measure.clock.unknown_feeds() > 0 {
-            let count = self.measure.clock.unknown_feeds().to_string();
+        if self.measure.schedule.unknown_feeds() > 0 {
+            let count = self.measure.schedule.unknown_feeds().to_string();
             time = format!("{time}\n{}", speech.fill("time-unknown", &[("n", &count)]));
         }
         rows.push((label("time"), time));

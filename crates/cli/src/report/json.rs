@@ -18,7 +18,7 @@ impl RunReport {
             })
             .collect();
         let estimates: Vec<Value> =
-            estimates(speech).map(|(key, text)| json!({ "key": key, "text": text })).collect();
+            estimates(&self.measure, speech).map(|(key, text)| json!({ "key": key, "text": text })).collect();
         json!({
             "turnwright": "run",
             "version": 1,
@@ -89,10 +89,10 @@ impl RunReport {
     }
 
     fn time_json(&self) -> Value {
-        let totals = self.measure.clock.totals();
+        let totals = self.measure.summary.totals();
         let mut time = json!({
             "total_s": totals.total_s(),
-            "moves_of_unknown_time": self.measure.clock.unknown_feeds(),
+            "moves_of_unknown_time": self.measure.schedule.unknown_feeds(),
         });
         for (kind, name) in TIME_PARTS {
             time[format!("{name}_s")] = json!(totals.seconds(kind));

@@ -4,16 +4,19 @@ mod human;
 mod json;
 mod page;
 
+use std::collections::BTreeMap;
+
 use turnwright_canon::Command;
 use turnwright_control::{CodeSystem, Control, Language, Machine, Parameters};
-use turnwright_diagnostics::Argument;
+use turnwright_diagnostics::{Argument, Diagnostic, Place, SourceId};
 use turnwright_export::passes::Cycle;
 use turnwright_export::path::PathRecorder;
-use turnwright_motion::{Clock, Kind, MachineRates, Operation, OperationKind, RapidSurfaceSpeed, Summary};
-use turnwright_units::{Length, Position, Rpm, WorkTip, write_millimetres};
+use turnwright_motion::{Dynamics, Kind, Operation, OperationKind, Schedule, ShortLeadIn, Summary};
+use turnwright_units::{Length, Position, WorkTip, write_millimetres};
 use turnwright_verify::Assumption;
 
 use crate::finding::Finding;
+use crate::rates::rates;
 use crate::session::Session;
 use crate::speech::Speech;
 
@@ -21,11 +24,14 @@ use crate::speech::Speech;
 #[derive(Debug)]
 pub(crate) struct Measure {
     /// Seconds.
-    pub(crate) clock: Clock,
+    pub(crate) schedule: Schedule,
     /// Operations and extents.
     pub(crate) summary: Summary,
     /// The path, for pictures.
     pub(crate) path: Option<PathRecorder>,
+    /// Threads that start too close to the work, once a line.
+    pub(crate) short_lead_ins: BTreeMap<(u32, u32), ShortLeadIn>,
+    dynamics: Option<Dynamics>,
 }
 
 impl Measure {
@@ -39,45 +45,54 @@ impl Measure {
         let rates = rates(machine, parameters);
         let path =
             keeps_path.then(|| PathRecorder::new(start, rates.rapid_x_mm_per_min, rates.rapid_z_mm_per_min));
-        Self { clock: Clock::new(start, rates), summary: Summary::new(), path }
+        Self {
+            schedule: Schedule::new(start, rates),
+            summary: Summary::new(),
+            path,
+            short_lead_ins: BTreeMap::new(),
+            dynamics: rates.dynamics,
+        }
     }
 
     /// Adds a command.
     #[inline]
-    pub(crate) fn add(&mut self, command: &Command) {
-        let timing = self.clock.advance(command);
-        self.summary.add(command, &timing);
-        if let Some(path) = &mut self.path {
-            path.add(command, timing.seconds);
-        }
+    pub(crate) fn add(&mut self, command: Command) {
+        self.schedule.push(command);
+        self.take();
     }
-}
 
-fn rates(machine: &Machine, parameters: &Parameters) -> MachineRates {
-    let axes = &machine.axes;
-    let usual = MachineRates::default();
-    let rapid_y = axes.y.as_ref().map(|axis| axis.rapid_mm_per_min);
-    let rapid_b = axes.b.as_ref().map(|axis| axis.rapid_deg_per_min);
-    let c = axes.c.as_ref();
-    MachineRates {
-        rapid_y_mm_per_min: rapid_y.unwrap_or(usual.rapid_y_mm_per_min),
-        rapid_c_deg_per_min: c.map_or(usual.rapid_c_deg_per_min, |axis| axis.rapid_deg_per_min),
-        rapid_b_deg_per_min: rapid_b.unwrap_or(usual.rapid_b_deg_per_min),
-        cutting_max_c_deg_per_min: c
-            .map_or(usual.cutting_max_c_deg_per_min, |axis| axis.cutting_max_deg_per_min),
-        rapid_x_mm_per_min: machine.rapid_x_mm_per_min,
-        rapid_z_mm_per_min: machine.rapid_z_mm_per_min,
-        cutting_max_mm_per_min: machine.cutting_max_mm_per_min,
-        tool_change_s: machine.tool_change_s,
-        spindle_ramp_rpm_per_s: machine.spindle_ramp_rpm_per_s,
-        auxiliary_s: machine.auxiliary_s,
-        rpm_max: (machine.rpm_max > 0).then_some(Rpm(machine.rpm_max)),
-        rpm_min_surface: machine.rpm_min_surface,
-        rapid_surface_speed: if parameters.bit("rapid-surface-speed-at-current-point") {
-            RapidSurfaceSpeed::AtPresentPoint
-        } else {
-            RapidSurfaceSpeed::AtEndPoint
-        },
+    /// No more commands come.
+    pub(crate) fn finish(&mut self) {
+        self.schedule.finish();
+        self.take();
+    }
+
+    /// What was found about the commands.
+    pub(crate) fn warnings(&self) -> impl Iterator<Item = Diagnostic> {
+        self.short_lead_ins.iter().map(|((source, line), short)| {
+            let source = SourceId(*source);
+            let place = Place { line: *line, line_offset: u64::MAX, column: 1, end_column: 1, source };
+            Diagnostic::warning("thread-start-too-close")
+                .at(place)
+                .with("needed", format!("{:.1}", short.needed_mm))
+                .with("has", format!("{:.1}", short.has_mm))
+        })
+    }
+
+    /// Takes the commands whose time is known.
+    fn take(&mut self) {
+        while let Some((command, timing)) = self.schedule.next_known() {
+            self.summary.add(&command, &timing);
+            if let Some(dynamics) = &self.dynamics
+                && let Some(short) = ShortLeadIn::of(&command, &timing, dynamics)
+            {
+                let line = (command.origin.source, command.origin.line);
+                self.short_lead_ins.entry(line).or_insert(short);
+            }
+            if let Some(path) = &mut self.path {
+                path.add(&command, timing.seconds);
+            }
+        }
     }
 }
 
@@ -199,6 +214,6 @@ pub(crate) fn assumption_text(assumption: &Assumption, speech: Speech) -> String
 }
 
 /// What the times rest on, sentence by sentence.
-fn estimates(speech: Speech) -> impl Iterator<Item = (&'static str, String)> {
-    turnwright_motion::ESTIMATES.iter().map(move |key| (*key, speech.fill(&format!("estimate-{key}"), &[])))
+fn estimates(measure: &Measure, speech: Speech) -> impl Iterator<Item = (&'static str, String)> {
+    measure.schedule.estimates().iter().map(move |key| (*key, speech.fill(&format!("estimate-{key}"), &[])))
 }

@@ -35,7 +35,8 @@ impl RunReport {
             }));
         }
         let [estimated_note_en, estimated_note_zh] = SPEECHES.map(|speech| {
-            let mut sentences: Vec<String> = estimates(speech).map(|(_, sentence)| sentence).collect();
+            let mut sentences: Vec<String> =
+                estimates(&self.measure, speech).map(|(_, sentence)| sentence).collect();
             let (space, stop) = if speech.language == BOTH[0] { (" ", ".") } else { ("", "。") };
             let assumed = self.assumptions.iter().map(|one| assumption_text(one, speech) + stop);
             sentences.extend(assumed);
@@ -106,7 +107,7 @@ impl RunReport {
     }
 
     fn page_facts(&self) -> Vec<Fact> {
-        let totals = self.measure.clock.totals();
+        let totals = self.measure.summary.totals();
         let mut facts = vec![fact("machine", |_| self.machine.name.clone())];
         if let Some(setup) = self.setup_name() {
             facts.push(fact("setup", |_| setup.clone()));

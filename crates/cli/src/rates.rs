@@ -1,0 +1,49 @@
+//! What the machine of a setup can do, for the motion crate.
+
+use turnwright_control::{Machine, Parameters};
+use turnwright_motion::{AxisDynamics, Dynamics, MachineRates, RapidSurfaceSpeed};
+use turnwright_units::Rpm;
+
+/// Rates, times, acceleration and jerk.
+pub(crate) fn rates(machine: &Machine, parameters: &Parameters) -> MachineRates {
+    let axes = &machine.axes;
+    let usual = MachineRates::default();
+    let rapid_y = axes.y.as_ref().map(|axis| axis.rapid_mm_per_min);
+    let rapid_b = axes.b.as_ref().map(|axis| axis.rapid_deg_per_min);
+    let c = axes.c.as_ref();
+    MachineRates {
+        rapid_y_mm_per_min: rapid_y.unwrap_or(usual.rapid_y_mm_per_min),
+        rapid_c_deg_per_min: c.map_or(usual.rapid_c_deg_per_min, |axis| axis.rapid_deg_per_min),
+        rapid_b_deg_per_min: rapid_b.unwrap_or(usual.rapid_b_deg_per_min),
+        cutting_max_c_deg_per_min: c
+            .map_or(usual.cutting_max_c_deg_per_min, |axis| axis.cutting_max_deg_per_min),
+        rapid_x_mm_per_min: machine.rapid_x_mm_per_min,
+        rapid_z_mm_per_min: machine.rapid_z_mm_per_min,
+        cutting_max_mm_per_min: machine.cutting_max_mm_per_min,
+        tool_change_s: machine.tool_change_s,
+        spindle_ramp_rpm_per_s: machine.spindle_ramp_rpm_per_s,
+        auxiliary_s: machine.auxiliary_s,
+        rpm_max: (machine.rpm_max > 0).then_some(Rpm(machine.rpm_max)),
+        rpm_min_surface: machine.rpm_min_surface,
+        rapid_surface_speed: if parameters.bit("rapid-surface-speed-at-current-point") {
+            RapidSurfaceSpeed::AtPresentPoint
+        } else {
+            RapidSurfaceSpeed::AtEndPoint
+        },
+        dynamics: Some(dynamics(machine)),
+    }
+}
+
+fn dynamics(machine: &Machine) -> Dynamics {
+    let usual = Dynamics::default();
+    let axis = |acceleration_per_s2, jerk_per_s3| AxisDynamics { acceleration_per_s2, jerk_per_s3 };
+    let [_, _, usual_y, usual_c, usual_b, _] = usual.axes;
+    let axes = &machine.axes;
+    let x = axis(machine.acceleration_x_mm_per_s2, machine.jerk_x_mm_per_s3);
+    let z = axis(machine.acceleration_z_mm_per_s2, machine.jerk_z_mm_per_s3);
+    let y = axes.y.as_ref().map_or(usual_y, |y| axis(y.acceleration_mm_per_s2, y.jerk_mm_per_s3));
+    let c = axes.c.as_ref().map_or(usual_c, |c| axis(c.acceleration_deg_per_s2, c.jerk_deg_per_s3));
+    let b = axes.b.as_ref().map_or(usual_b, |b| axis(b.acceleration_deg_per_s2, b.jerk_deg_per_s3));
+    // A virtual axis is made by X and the rotary axis: it is taken to be no quicker than X.
+    Dynamics { axes: [x, z, y, c, b, x], corner_s: machine.corner_s, in_position_s: machine.in_position_s }
+}

@@ -1,0 +1,168 @@
+//! What the axes can do beyond their rates: acceleration, jerk, and how corners are passed.
+//!
+//! A cutting path meets several demands at once: it speeds up, it bends, and at its corners the axes change speed. Each
+//! has its share of what an axis can do, so that together they never ask for more. Rapids, alone on a straight way,
+//! have all of it.
+
+use crate::planner::RunLimits;
+
+/// Acceleration and jerk of one axis: mm of slide, or degrees, per s² and s³.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisDynamics {
+    /// mm/s², or degrees/s².
+    pub acceleration_per_s2: f64,
+    /// mm/s³, or degrees/s³.
+    pub jerk_per_s3: f64,
+}
+
+impl AxisDynamics {
+    /// The limits of a way on which the axis moves by `share` of each millimetre.
+    pub(crate) fn along(self, share: f64) -> RunLimits {
+        RunLimits {
+            acceleration_mm_per_s2: self.acceleration_per_s2 / share,
+            jerk_mm_per_s3: self.jerk_per_s3 / share,
+        }
+    }
+
+    /// Minutes from rest to rest at a rate; `None` when that is no rate.
+    pub(crate) fn minutes(self, way: f64, per_minute: f64) -> Option<f64> {
+        let seconds = if per_minute > 0.0 && per_minute.is_finite() {
+            self.along(1.0).rest_to_rest_s(way, per_minute / 60.0)
+        } else {
+            return None;
+        };
+        seconds.is_finite().then_some(seconds / 60.0)
+    }
+}
+
+/// The axes in the order of [`crate::leg::Place`].
+pub const AXIS_COUNT: usize = 6;
+
+/// What the axes of a machine can do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dynamics {
+    /// X (as a radius), Z, Y, C, B, and the virtual axis of polar and cylindrical interpolation.
+    pub axes: [AxisDynamics; AXIS_COUNT],
+    /// Seconds over which the axes change their speed at a corner of a cutting path: the longer, the faster corners
+    /// are passed and the rounder they become.
+    pub corner_s: f64,
+    /// Seconds after a rapid, and after a move in exact-stop mode, until the axes are in position.
+    pub in_position_s: f64,
+}
+
+impl Default for Dynamics {
+    /// The generic lathe of the data folder; rotary axes and Y those of its turn-mill.
+    fn default() -> Self {
+        let axis = |acceleration_per_s2, jerk_per_s3| AxisDynamics { acceleration_per_s2, jerk_per_s3 };
+        let (slide, rotary) = (axis(3_000.0, 150_000.0), axis(3_000.0, 60_000.0));
+        Self {
+            axes: [slide, slide, axis(2_000.0, 100_000.0), rotary, axis(1_000.0, 20_000.0), slide],
+            corner_s: 0.01,
+            in_position_s: 0.02,
+        }
+    }
+}
+
+/// Shares of acceleration on a cutting path: along it, towards the centres of arcs, at corners. Together 1.
+const ALONG: f64 = 0.25;
+const BENDING: f64 = 0.4;
+const CORNER: f64 = 0.35;
+
+/// Shares of jerk on a cutting path. Together 1.
+const JERK_ALONG: f64 = 0.3;
+const JERK_BENDING: f64 = 0.45;
+const JERK_CORNER: f64 = 0.25;
+
+/// Share of acceleration and jerk for the ramps of a thread.
+const THREADING: f64 = 0.8;
+
+impl Dynamics {
+    /// The key of the first value that no machine can have.
+    pub fn first_fault(&self) -> Option<&'static str> {
+        let positive = |value: f64| value.is_finite() && value > 0.0;
+        let is_sound = |axis: &AxisDynamics| positive(axis.acceleration_per_s2) && positive(axis.jerk_per_s3);
+        if !self.axes.iter().all(is_sound) {
+            return Some("acceleration");
+        }
+        if !positive(self.corner_s) || self.corner_s > CORNER_S_MAX {
+            return Some("corner_s");
+        }
+        let in_position = self.in_position_s;
+        (!(in_position.is_finite() && in_position >= 0.0)).then_some("in_position_s")
+    }
+
+    /// The limits on a straight way, from rest to rest, along a direction: each axis has all of its own.
+    pub(crate) fn straight(&self, direction: &[f64; AXIS_COUNT]) -> RunLimits {
+        let mut limits = RunLimits { acceleration_mm_per_s2: f64::INFINITY, jerk_mm_per_s3: f64::INFINITY };
+        for (axis, share) in self.axes.iter().zip(direction).filter(|(_, share)| **share != 0.0) {
+            let along = axis.along(share.abs());
+            limits.acceleration_mm_per_s2 = limits.acceleration_mm_per_s2.min(along.acceleration_mm_per_s2);
+            limits.jerk_mm_per_s3 = limits.jerk_mm_per_s3.min(along.jerk_mm_per_s3);
+        }
+        limits
+    }
+
+    /// The limits of a move in step with the spindle, along its long axis: `direction` is the way of each axis for a
+    /// millimetre of that one. What is left over follows the spindle where its speed is not even.
+    pub(crate) fn threading(&self, direction: &[f64; AXIS_COUNT]) -> RunLimits {
+        let RunLimits { acceleration_mm_per_s2, jerk_mm_per_s3 } = self.straight(direction);
+        RunLimits {
+            acceleration_mm_per_s2: THREADING * acceleration_mm_per_s2,
+            jerk_mm_per_s3: THREADING * jerk_mm_per_s3,
+        }
+    }
+
+    /// The limits along a cutting path on X and Z, whatever its direction; of other axes when they move along.
+    pub(crate) fn cutting(&self, with_others: bool) -> RunLimits {
+        let count = if with_others { AXIS_COUNT } else { 2 };
+        let least =
+            |of: fn(&AxisDynamics) -> f64| self.axes[..count].iter().map(of).fold(f64::INFINITY, f64::min);
+        RunLimits {
+            acceleration_mm_per_s2: ALONG * least(|axis| axis.acceleration_per_s2),
+            jerk_mm_per_s3: JERK_ALONG * least(|axis| axis.jerk_per_s3),
+        }
+    }
+
+    /// The highest speed on an arc in a plane of two axes, mm/s.
+    ///
+    /// Acceleration towards the centre: v²/r. Jerk: 3·v·a/r while the speed changes by `a`, and v³/r² always; each has
+    /// half of the share.
+    pub(crate) fn arc_speed(&self, axes: [usize; 2], radius_mm: f64, along: RunLimits) -> f64 {
+        let least = |of: fn(&AxisDynamics) -> f64| of(&self.axes[axes[0]]).min(of(&self.axes[axes[1]]));
+        let acceleration = BENDING * least(|axis| axis.acceleration_per_s2);
+        let jerk = JERK_BENDING / 2.0 * least(|axis| axis.jerk_per_s3);
+        (acceleration * radius_mm)
+            .sqrt()
+            .min(jerk * radius_mm / (3.0 * along.acceleration_mm_per_s2))
+            .min(libm::cbrt(jerk * radius_mm * radius_mm))
+    }
+
+    /// The highest speed over corners that lie within the time of one: `turn` is the sum of the changes of direction
+    /// of each axis, `bend` that of the changes of curvature.
+    ///
+    /// The axes are averaged twice over `corner_s`: a change of speed by v·turn takes an acceleration of v·turn/T and
+    /// a jerk of v·turn/T², a change of acceleration by v²·bend a jerk of v²·bend/T.
+    pub(crate) fn corner_speed(&self, turn: &[f64; AXIS_COUNT], bend: &[f64; AXIS_COUNT]) -> f64 {
+        let time = self.corner_s;
+        let mut speed = f64::INFINITY;
+        for ((axis, turn), bend) in self.axes.iter().zip(turn).zip(bend) {
+            let turn = turn.abs();
+            if turn > TURN_NONE {
+                speed = speed.min(CORNER * axis.acceleration_per_s2 * time / turn);
+            }
+            if turn > TURN_NONE || *bend > 0.0 {
+                // v²·bend/T + v·turn/T² = jerk
+                let jerk = JERK_CORNER * axis.jerk_per_s3;
+                let (square, linear) = (bend / time, turn / (time * time));
+                speed = speed.min(2.0 * jerk / (linear + (linear * linear + 4.0 * square * jerk).sqrt()));
+            }
+        }
+        speed
+    }
+}
+
+/// A longer time would round corners beyond what any control does, s.
+pub const CORNER_S_MAX: f64 = 1.0;
+
+/// Changes of direction below this are rounding.
+const TURN_NONE: f64 = 1e-12;

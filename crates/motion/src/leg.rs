@@ -1,0 +1,90 @@
+//! A leg: one block's way in the space of the axes.
+//!
+//! Straight lines of all axes, and arcs in one plane with the other axes spread evenly along them. In: places in mm
+//! and degrees. Out: places and directions anywhere on the way, exact up to rounding.
+
+use turnwright_geometry::Point;
+
+use crate::dynamics::AXIS_COUNT;
+use crate::path::ArcPath;
+
+/// X (as a radius), Z, Y in mm, C and B in degrees, the virtual axis in mm.
+pub type Place = [f64; AXIS_COUNT];
+
+/// Index of X in a [`Place`].
+pub const X: usize = 0;
+/// Index of Z.
+pub const Z: usize = 1;
+/// Index of Y.
+pub const Y: usize = 2;
+/// Index of C.
+pub const C: usize = 3;
+/// Index of B.
+pub const B: usize = 4;
+/// Index of the virtual axis.
+pub const V: usize = 5;
+
+/// An arc in a plane of two axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LegArc {
+    /// The axes that are right and up in the plane.
+    pub(crate) axes: [usize; 2],
+    pub(crate) path: ArcPath,
+}
+
+/// One block's way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Leg {
+    pub(crate) from: Place,
+    pub(crate) to: Place,
+    pub(crate) arc: Option<LegArc>,
+    /// The length that feed is measured along, mm.
+    pub(crate) length_mm: f64,
+}
+
+impl Leg {
+    /// The place after a part (0 to 1) of the way. Both ends are exact.
+    pub(crate) fn place(&self, part: f64) -> Place {
+        if part >= 1.0 {
+            return self.to;
+        }
+        let mut place = self.from;
+        for (axis, to) in place.iter_mut().zip(self.to) {
+            *axis += (to - *axis) * part;
+        }
+        if let Some(LegArc { axes: [right, up], path }) = &self.arc {
+            let Point { x, z } = path.point(part);
+            (place[*right], place[*up]) = (z, x);
+        }
+        place
+    }
+
+    /// How much each axis moves on the next millimetre, at the start or the end.
+    pub(crate) fn direction(&self, part: f64) -> Place {
+        let mut direction: Place =
+            std::array::from_fn(|axis| (self.to[axis] - self.from[axis]) / self.length_mm);
+        if let Some(LegArc { axes: [right, up], path }) = &self.arc {
+            let angle = path.start_rad + path.sweep_rad * part;
+            let speed = path.sweep_rad * path.radius_at(part) / self.length_mm;
+            (direction[*right], direction[*up]) = (-speed * libm::sin(angle), speed * libm::cos(angle));
+        }
+        direction
+    }
+
+    /// How the direction changes on the next millimetre, at the start or the end.
+    pub(crate) fn curvature(&self, part: f64) -> Place {
+        let mut curvature = [0.0; AXIS_COUNT];
+        if let Some(LegArc { axes: [right, up], path }) = &self.arc {
+            let angle = path.start_rad + path.sweep_rad * part;
+            let turning = path.sweep_rad / self.length_mm;
+            let size = -turning * turning * path.radius_at(part);
+            (curvature[*right], curvature[*up]) = (size * libm::cos(angle), size * libm::sin(angle));
+        }
+        curvature
+    }
+
+    /// The smaller of the radii at both ends of an arc.
+    pub(crate) fn radius_mm(&self) -> Option<f64> {
+        self.arc.map(|arc| arc.path.start_radius_mm.min(arc.path.end_radius_mm))
+    }
+}

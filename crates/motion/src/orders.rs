@@ -1,0 +1,177 @@
+//! What a cutting command orders, for the planner: its legs, the speed on them, and what limits it.
+
+use turnwright_canon::{Action, OtherAxes, Shape, SidePlane, Turn};
+use turnwright_geometry::Point;
+use turnwright_units::{Feed, Position, WorkTip};
+
+use crate::Dynamics;
+use crate::clock::Clock;
+use crate::feedrate::{Order, TurningSpindle};
+use crate::leg::{B, C, Leg, LegArc, Place, V, X, Y, Z};
+use crate::path::{ArcPath, stretches};
+use crate::planner::RunLimits;
+use crate::surface::Slowness;
+
+/// What a cutting move orders.
+pub(crate) struct CutOrder<'a> {
+    from: Position<WorkTip>,
+    to: Position<WorkTip>,
+    shape: &'a Shape,
+    start: Place,
+    end: Place,
+    /// Feed is measured along so many mm for each of the path in the section.
+    feed_per_mm: f64,
+    path_mm: f64,
+    pub(crate) order: Order,
+    /// Axes beyond X and Z move along.
+    pub(crate) has_others: bool,
+}
+
+impl Clock {
+    /// Where all axes are.
+    pub(crate) fn place(&self) -> Place {
+        let mut place = self.axes().places();
+        (place[X], place[Z]) = (self.position().x.to_mm(), self.position().z.to_mm());
+        place
+    }
+
+    /// Where all axes are at the end of a move.
+    pub(crate) fn place_after(&self, to: Position<WorkTip>, others: Option<&OtherAxes>) -> Place {
+        let mut place = self.place();
+        (place[X], place[Z]) = (to.x.to_mm(), to.z.to_mm());
+        if let Some(others) = others {
+            let set = |place: &mut f64, value: Option<f64>| *place = value.unwrap_or(*place);
+            set(&mut place[Y], others.y.map(|y| y.to_mm()));
+            set(&mut place[B], others.b.map(|b| b.to_degrees()));
+            set(&mut place[V], others.v.map(|v| v.to_mm()));
+            // The rotary axis of a virtual plane follows the path; it is no way of its own.
+            if others.v.is_none() {
+                set(&mut place[C], others.c.map(|c| c.to_degrees()));
+            }
+        }
+        place
+    }
+
+    /// What the next command orders when it is a cut at a known speed; `None` for all else.
+    pub(crate) fn cut_order<'a>(&self, action: &'a Action) -> Option<CutOrder<'a>> {
+        let Action::Feed { to, shape, feed, others } = action else { return None };
+        let (from, to, others) = (self.position(), *to, others.as_deref());
+        let path_mm: f64 = stretches(from, to, shape).map(|piece| piece.length_mm()).sum();
+        let feed_mm = match others {
+            None => path_mm,
+            Some(others) => self.axes().cut(from, to, shape, path_mm, others, self.rates()).feed_mm,
+        };
+        if feed_mm <= 0.0 || !feed_mm.is_finite() {
+            return None;
+        }
+        let spindle = self.spindle_order();
+        let order = match (feed, spindle) {
+            (Feed::PerMinute(feed), _) => Order::Speed(feed.0.to_mm() / 60.0),
+            (Feed::PerRevolution(feed), crate::spindle::Order::Constant(rpm)) => {
+                Order::Speed(feed.0.to_mm() * rpm / 60.0)
+            }
+            (Feed::PerRevolution(feed), crate::spindle::Order::Surface(law)) => {
+                let feed_mm_per_rev = feed.0.to_mm();
+                let slowness = Slowness::new(feed_mm_per_rev, law, self.rates().cutting_max_mm_per_min)?;
+                Order::Surface { law, feed_mm_per_rev, slowness }
+            }
+        };
+        if let Order::Speed(speed) = order
+            && !(speed.is_finite() && speed > 0.0)
+        {
+            return None;
+        }
+        Some(CutOrder {
+            from,
+            to,
+            shape,
+            start: self.place(),
+            end: self.place_after(to, others),
+            feed_per_mm: if path_mm > 0.0 { feed_mm / path_mm } else { 1.0 },
+            path_mm: if path_mm > 0.0 { path_mm } else { feed_mm },
+            order,
+            has_others: others.is_some(),
+        })
+    }
+
+    /// The spindle as it turns now.
+    pub(crate) fn turning_spindle(&self) -> TurningSpindle {
+        TurningSpindle { rpm: self.spindle().actual_rpm(), ramp_rpm_per_s: self.spindle().ramp_rpm_per_s() }
+    }
+}
+
+impl CutOrder<'_> {
+    /// The legs, one behind the other.
+    pub(crate) fn legs(&self) -> impl Iterator<Item = Leg> {
+        let Self { start, end, path_mm, feed_per_mm, .. } = *self;
+        let is_curve = matches!(self.shape, Shape::Curve(_));
+        let side_arc = self.side_arc();
+        let mut done_mm = 0.0;
+        let mut from = start;
+        stretches(self.from, self.to, self.shape).map(move |piece| {
+            let length_mm = if is_curve { piece.length_mm() } else { path_mm };
+            done_mm += length_mm;
+            let part = if is_curve { (done_mm / path_mm).min(1.0) } else { 1.0 };
+            let mut to: Place = std::array::from_fn(|axis| start[axis] + (end[axis] - start[axis]) * part);
+            (to[X], to[Z]) = (piece.end.x, piece.end.z);
+            let arc = piece.arc.map(|path| LegArc { axes: [Z, X], path }).or(side_arc);
+            let leg = Leg { from, to, arc, length_mm: length_mm * feed_per_mm };
+            from = to;
+            leg
+        })
+    }
+
+    /// An arc in a plane of the side axis.
+    fn side_arc(&self) -> Option<LegArc> {
+        let Shape::SideArc { plane, turn, centre } = self.shape else { return None };
+        let side = if self.end[V] != self.start[V] || self.end[Y] == self.start[Y] && self.start[V] != 0.0 {
+            V
+        } else {
+            Y
+        };
+        let axes = match plane {
+            SidePlane::Face => [X, side],
+            SidePlane::Flank => [side, Z],
+            SidePlane::Wall => [Z, side],
+        };
+        let at = |place: &Place| Point::new(place[axes[1]], place[axes[0]]);
+        let (right, up) = plane.right_and_up(*centre);
+        let path =
+            ArcPath::between(at(&self.start), at(&self.end), Point::new(up, right), *turn == Turn::Clockwise);
+        Some(LegArc { axes, path })
+    }
+}
+
+/// The highest speed on a leg, mm/s, whatever the feed.
+pub(crate) fn leg_limit(leg: &Leg, clock: &Clock, dynamics: &Dynamics, along: RunLimits) -> f64 {
+    let rates = clock.rates();
+    let per_minute = [
+        rates.rapid_x_mm_per_min,
+        rates.rapid_z_mm_per_min,
+        rates.rapid_y_mm_per_min,
+        rates.cutting_max_c_deg_per_min,
+        rates.rapid_b_deg_per_min,
+        rates.rapid_x_mm_per_min,
+    ];
+    let in_arc = |axis: usize| leg.arc.is_some_and(|arc| arc.axes.contains(&axis));
+    let mut limit = f64::INFINITY;
+    let mut turning = 0.0f64;
+    for (axis, rate) in per_minute.into_iter().enumerate() {
+        let share = if in_arc(axis) { 1.0 } else { (leg.to[axis] - leg.from[axis]).abs() / leg.length_mm };
+        if share > 0.0 {
+            limit = limit.min(rate / 60.0 / share);
+        }
+        if matches!(axis, C | B) {
+            turning = turning.max(share);
+        }
+    }
+    // Degrees are no way in millimetres: the largest feed holds for the rest.
+    let moving = (1.0 - turning * turning).max(0.0).sqrt();
+    if moving > 0.0 {
+        limit = limit.min(rates.cutting_max_mm_per_min / 60.0 / moving);
+    }
+    match (leg.arc, leg.radius_mm()) {
+        (Some(arc), Some(radius_mm)) => limit.min(dynamics.arc_speed(arc.axes, radius_mm, along)),
+        _ => limit,
+    }
+}

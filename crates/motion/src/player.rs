@@ -1,0 +1,444 @@
+//! The player: where every axis is at every tick.
+//!
+//! In: commands in order of execution, and what the operator does meanwhile ([`Panel`]). Out: a [`Sample`] a tick, at
+//! any rate, through a closure that is called as soon as a place is final.
+//!
+//! The player holds a few thousand legs and nothing that grows with the program. The same commands give the same
+//! samples, bit for bit.
+
+use std::collections::VecDeque;
+
+use turnwright_canon::{Action, Command, OtherAxes, PathMode, RapidPath};
+use turnwright_units::{Position, WorkTip};
+
+use crate::clock::{Clock, Kind};
+use crate::leg::{Place, X, Z};
+use crate::orders::leg_limit;
+use crate::planner::{Feedrate, Pace, RunLimits};
+use crate::run::CuttingRun;
+use crate::smoother::Smoother;
+use crate::spindle::SpindleAngle;
+use crate::thread::ThreadPlan;
+use crate::thread_chain::ThreadChain;
+use crate::{AXIS_COUNT, Dynamics, MachineRates, RapidSurfaceSpeed};
+
+/// What the operator has set. It may change at any tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Panel {
+    /// Feed override, 1 for 100 %. Threads do not heed it.
+    pub feed: f64,
+    /// Rapid override, 1 for 100 %.
+    pub rapid: f64,
+    /// Feed hold: the axes come to rest. A thread is finished first.
+    pub is_held: bool,
+    /// Dry run: cuts go at this speed, mm/min, whatever their feed.
+    pub dry_run_mm_per_min: Option<f64>,
+    /// The axes come to rest behind each block.
+    pub single_block: bool,
+}
+
+impl Default for Panel {
+    fn default() -> Self {
+        Self { feed: 1.0, rapid: 1.0, is_held: false, dry_run_mm_per_min: None, single_block: false }
+    }
+}
+
+impl Panel {
+    fn cutting(&self) -> (Feedrate, bool) {
+        let order = match self.dry_run_mm_per_min {
+            Some(mm_per_min) => Feedrate::Fixed(mm_per_min / 60.0),
+            None => Feedrate::Override(self.feed),
+        };
+        (order, self.is_held || self.dry_run_mm_per_min.is_none() && self.feed <= 0.0)
+    }
+
+    fn rapid(&self) -> (Feedrate, bool) {
+        (Feedrate::Override(self.rapid), self.is_held || self.rapid <= 0.0)
+    }
+}
+
+/// The machine at one tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Seconds since the start.
+    pub time_s: f64,
+    /// Where the axes are told to be.
+    pub place: Place,
+    /// Speed along the path, mm/s, before corners are rounded; 0 in threads and rapids of each axis for itself.
+    pub path_mm_per_s: f64,
+    /// Speed of the spindle, rpm; negative counter-clockwise.
+    pub rpm: f64,
+    /// Turns of the spindle since the start.
+    pub turns: f64,
+    /// What the time is spent on.
+    pub kind: Kind,
+    /// Program text of the block.
+    pub source: u32,
+    /// Line of the block.
+    pub line: u32,
+}
+
+/// Where a leg came from.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    source: u32,
+    line: u32,
+}
+
+/// Plays commands.
+#[derive(Debug)]
+pub struct Player {
+    clock: Clock,
+    dynamics: Dynamics,
+    rate_hz: f64,
+    tick: u64,
+    /// When what is being done began.
+    now_s: f64,
+    panel: Panel,
+    changes: VecDeque<(f64, Panel)>,
+    run: CuttingRun,
+    has_others: bool,
+    mode: PathMode,
+    blocks: VecDeque<Block>,
+    lanes: Box<[Pace; AXIS_COUNT]>,
+    smoother: Smoother,
+    spindle: SpindleAngle,
+    thread: ThreadChain,
+    is_stuck: bool,
+}
+
+/// Caps of a rapid: one, and what overrides make of it.
+const LANE_CAPS: usize = 4;
+
+impl Player {
+    /// The tool tip at `start`, the spindle standing. `rate_hz` is the number of ticks a second.
+    pub fn new(start: Position<WorkTip>, rates: MachineRates, rate_hz: f64) -> Self {
+        let dynamics = rates.dynamics.filter(|dynamics| dynamics.first_fault().is_none()).unwrap_or_default();
+        let rates = MachineRates { dynamics: Some(dynamics), ..rates };
+        let unit = RunLimits { acceleration_mm_per_s2: 1.0, jerk_mm_per_s3: 1.0 };
+        Self {
+            clock: Clock::new(start, rates),
+            dynamics,
+            rate_hz,
+            tick: 0,
+            now_s: 0.0,
+            panel: Panel::default(),
+            changes: VecDeque::new(),
+            run: CuttingRun::new(dynamics),
+            has_others: false,
+            mode: PathMode::Continuous,
+            blocks: VecDeque::new(),
+            lanes: Box::new(std::array::from_fn(|_| Pace::with_capacity(LANE_CAPS, unit))),
+            smoother: Smoother::new(dynamics.corner_s, 1.0 / rate_hz),
+            spindle: SpindleAngle::default(),
+            thread: ThreadChain::default(),
+            is_stuck: false,
+        }
+    }
+
+    /// From a time on the operator has set the panel so. Times must rise.
+    pub fn set_at(&mut self, time_s: f64, panel: Panel) {
+        self.changes.push_back((time_s, panel));
+    }
+
+    /// Whether a hold that is never released has stopped everything.
+    pub const fn is_stuck(&self) -> bool {
+        self.is_stuck
+    }
+
+    /// Seconds played.
+    pub const fn played_s(&self) -> f64 {
+        self.now_s
+    }
+
+    /// The next command; `sink` gets the samples that are final.
+    pub fn push(&mut self, command: &Command, sink: &mut dyn FnMut(&Sample)) {
+        let block = Block { source: command.origin.source, line: command.origin.line };
+        if !matches!(&command.action, Action::Thread { is_chained: true, .. }) {
+            self.play_thread(sink);
+        }
+        match &command.action {
+            Action::Feed { others, .. } => {
+                let goes_on = self.run.is_open()
+                    && self.mode != PathMode::ExactStop
+                    && !self.panel.single_block
+                    && others.is_some() == self.has_others
+                    && !self.clock.would_wait();
+                if !goes_on {
+                    self.end_run(sink);
+                }
+                self.cut(command, block, sink);
+                return;
+            }
+            Action::PathMode(mode) => {
+                self.mode = *mode;
+                return;
+            }
+            Action::Message(_) | Action::Output(_) => return,
+            _ => {}
+        }
+        self.end_run(sink);
+        match &command.action {
+            Action::Rapid { to, path, others } => {
+                self.rapid(command, *to, *path, others.as_deref(), block, sink)
+            }
+            Action::Thread { .. } => self.thread.add(command, &mut self.clock, &self.dynamics),
+            _ => {
+                let timing = self.clock.advance(command);
+                self.stand(timing.seconds, timing.kind, block, sink);
+            }
+        }
+        self.smoother.stand(&self.clock.place());
+    }
+
+    /// No more commands come.
+    pub fn finish(&mut self, sink: &mut dyn FnMut(&Sample)) {
+        self.play_thread(sink);
+        self.end_run(sink);
+    }
+
+    fn next_s(&self) -> f64 {
+        self.tick as f64 / self.rate_hz
+    }
+
+    /// Whether the panel changes with the next tick.
+    fn look_at_panel(&mut self) -> bool {
+        let mut has_changed = false;
+        while self.changes.front().is_some_and(|(time_s, _)| *time_s <= self.next_s()) {
+            if let Some((_, panel)) = self.changes.pop_front() {
+                (self.panel, has_changed) = (panel, true);
+            }
+        }
+        has_changed
+    }
+
+    fn give(
+        &mut self,
+        place: Place,
+        path_mm_per_s: f64,
+        kind: Kind,
+        block: Block,
+        sink: &mut dyn FnMut(&Sample),
+    ) {
+        let time_s = self.next_s();
+        let spindle = self.clock.spindle();
+        // In a rapid the spindle already aims at its end, where the clock is, or follows the tool.
+        let aims_at_end =
+            kind == Kind::Rapid && self.clock.rates().rapid_surface_speed == RapidSurfaceSpeed::AtEndPoint;
+        let x_mm = if aims_at_end { self.clock.position().x.to_mm() } else { place[X] };
+        let rpm = if kind == Kind::Threading { self.spindle.rpm } else { spindle.wanted_rpm(x_mm) };
+        self.spindle.turn(rpm, spindle.ramp_rpm_per_s(), 1.0 / self.rate_hz);
+        sink(&Sample {
+            time_s,
+            place,
+            path_mm_per_s,
+            rpm: self.spindle.rpm,
+            turns: self.spindle.turns,
+            kind,
+            source: block.source,
+            line: block.line,
+        });
+        self.tick += 1;
+    }
+
+    /// Stands still.
+    fn stand(&mut self, seconds: f64, kind: Kind, block: Block, sink: &mut dyn FnMut(&Sample)) {
+        let place = self.clock.place();
+        let end_s = self.now_s + seconds;
+        while self.next_s() < end_s && !self.is_stuck {
+            self.look_at_panel();
+            self.give(place, 0.0, kind, block, sink);
+        }
+        self.now_s = end_s;
+    }
+
+    /// Takes up the legs of a cut.
+    fn cut(&mut self, command: &Command, block: Block, sink: &mut dyn FnMut(&Sample)) {
+        let Some(order) = self.clock.cut_order(&command.action) else {
+            self.end_run(sink);
+            let timing = self.clock.advance(command);
+            self.stand(timing.seconds, timing.kind, block, sink);
+            self.smoother.stand(&self.clock.place());
+            return;
+        };
+        let before = self.clock.turning_spindle();
+        let mut after = self.clock.clone();
+        let timing = after.advance(command);
+        if !self.run.is_open() {
+            self.stand(timing.waited_s, Kind::Spindle, block, sink);
+            self.has_others = order.has_others;
+            let mut spindle = before;
+            if timing.waited_s > 0.0 || before.ramp_rpm_per_s == 0.0 {
+                spindle.rpm = self.clock.spindle_order().rpm_at(self.clock.position().x.to_mm());
+            }
+            self.smoother.stand(&self.clock.place());
+            let (feedrate, is_held) = self.panel.cutting();
+            self.run.begin(self.dynamics.cutting(self.has_others), spindle);
+            self.run.pace.preset(feedrate, is_held);
+        }
+        for leg in order.legs().filter(|leg| leg.length_mm > 0.0) {
+            while !self.run.has_room() && !self.is_stuck {
+                self.play_run(sink);
+            }
+            let limit = leg_limit(&leg, &self.clock, &self.dynamics, self.run.pace.limits());
+            self.run.push(leg, order.order, limit);
+            self.blocks.push_back(block);
+        }
+        self.clock = after;
+    }
+
+    /// Plays what is final of the run; whether it is over.
+    fn play_run(&mut self, sink: &mut dyn FnMut(&Sample)) -> bool {
+        loop {
+            self.run.plan();
+            let time_s = self.next_s() - self.now_s;
+            match self.run.duration_s() {
+                Some(duration) if time_s >= duration => {
+                    self.now_s += duration;
+                    return true;
+                }
+                None if time_s > self.run.pace.planned_s() && !self.run.pace.is_held() => return false,
+                _ => {}
+            }
+            if self.look_at_panel() {
+                let (feedrate, is_held) = self.panel.cutting();
+                self.run.pace.interrupt(time_s, feedrate, is_held);
+                continue;
+            }
+            let settled_s = time_s - 2.0 * self.dynamics.corner_s;
+            if self.run.pace.is_held() && self.changes.is_empty() && self.run.pace.is_resting(settled_s) {
+                self.is_stuck = true;
+                return true;
+            }
+            let (place, state) = self.run.at(time_s);
+            let passed = self.run.forget_before(time_s);
+            self.blocks.drain(..passed.min(self.blocks.len().saturating_sub(1)));
+            let place = self.smoother.next(&place);
+            let block = self.blocks.front().copied().unwrap_or(Block { source: 0, line: 0 });
+            self.give(place, state.speed_mm_per_s, Kind::Cutting, block, sink);
+        }
+    }
+
+    /// Comes to rest.
+    fn end_run(&mut self, sink: &mut dyn FnMut(&Sample)) {
+        if !self.run.is_open() {
+            return;
+        }
+        self.run.close(self.mode);
+        while !self.is_stuck && !self.play_run(sink) {}
+        self.blocks.clear();
+        self.clock.lag_behind(self.run.spindle.rpm);
+    }
+
+    /// A rapid: each axis for itself, or X and Z together.
+    fn rapid(
+        &mut self,
+        command: &Command,
+        to: Position<WorkTip>,
+        path: RapidPath,
+        others: Option<&OtherAxes>,
+        block: Block,
+        sink: &mut dyn FnMut(&Sample),
+    ) {
+        let (from, end) = (self.clock.place(), self.clock.place_after(to, others));
+        let rates = self.clock.rapid_rates();
+        let way: Place = std::array::from_fn(|axis| end[axis] - from[axis]);
+        let is_straight = path == RapidPath::Straight;
+        let section_mm = libm::hypot(way[X], way[Z]);
+        for axis in 0..AXIS_COUNT {
+            let lane = &mut self.lanes[axis];
+            let (length, speed, limits) = match axis {
+                X if is_straight && section_mm > 0.0 => {
+                    let (x, z) = (way[X].abs() / section_mm, way[Z].abs() / section_mm);
+                    let limits = self.dynamics.straight(&[x, z, 0.0, 0.0, 0.0, 0.0]);
+                    (section_mm, (rates[X] / x).min(rates[Z] / z), limits)
+                }
+                Z if is_straight => (0.0, rates[Z], self.dynamics.axes[Z].along(1.0)),
+                _ => (way[axis].abs(), rates[axis], self.dynamics.axes[axis].along(1.0)),
+            };
+            lane.begin(limits);
+            let (feedrate, is_held) = self.panel.rapid();
+            lane.preset(feedrate, is_held);
+            let speed = speed / 60.0;
+            if length > 0.0 && speed.is_finite() && speed > 0.0 {
+                // An empty lane has room for one.
+                let _ = lane.push(length, speed, speed);
+            }
+            lane.close();
+        }
+        self.clock.advance(command);
+        loop {
+            let time_s = self.next_s() - self.now_s;
+            self.lanes.iter_mut().for_each(Pace::plan);
+            let longest = |known: Option<f64>, lane: &Pace| Some(known?.max(lane.duration_s()?));
+            if let Some(duration) = self.lanes.iter().fold(Some(0.0), longest) {
+                let settled = duration + if duration > 0.0 { self.dynamics.in_position_s } else { 0.0 };
+                if time_s >= settled {
+                    self.now_s += settled;
+                    return;
+                }
+            }
+            if self.look_at_panel() {
+                let (feedrate, is_held) = self.panel.rapid();
+                self.lanes.iter_mut().for_each(|lane| lane.interrupt(time_s, feedrate, is_held));
+                continue;
+            }
+            let is_resting = |lane: &Pace| lane.duration_s().is_some() || lane.is_resting(time_s);
+            if self.lanes[X].is_held() && self.changes.is_empty() && self.lanes.iter().all(is_resting) {
+                self.is_stuck = true;
+                return;
+            }
+            let mut place = from;
+            for axis in 0..AXIS_COUNT {
+                let of_lane = if is_straight && axis == Z { X } else { axis };
+                let lane = &self.lanes[of_lane];
+                let part = if lane.end_mm() > 0.0 { lane.at(time_s).at_mm / lane.end_mm() } else { 1.0 };
+                place[axis] = if part >= 1.0 { end[axis] } else { from[axis] + way[axis] * part };
+            }
+            let speed = if is_straight { self.lanes[X].at(time_s).speed_mm_per_s } else { 0.0 };
+            self.lanes.iter_mut().for_each(|lane| lane.forget_before(time_s));
+            self.give(place, speed, Kind::Rapid, block, sink);
+        }
+    }
+
+    /// Plays the chain of threads that waits.
+    fn play_thread(&mut self, sink: &mut dyn FnMut(&Sample)) {
+        let Some(chain) = self.thread.take() else { return };
+        let block = Block { source: chain.source, line: chain.lines[0] };
+        self.stand(chain.waited_s, Kind::Spindle, block, sink);
+        match ThreadPlan::new(&chain.stretches, chain.rpm) {
+            Ok(plan) => {
+                let per_second = self.spindle.rpm.abs() / 60.0;
+                let next_turns =
+                    |player: &Self| player.spindle.turns + (player.next_s() - player.last_s()) * per_second;
+                // The next time that the spindle comes to the start.
+                let start = chain.start_turns - plan.advance();
+                let begin = start + (next_turns(self) - start).ceil();
+                self.smoother.stand(&chain.at(0.0).0);
+                let is_bent = chain.is_bent();
+                let lead_s = if is_bent { self.smoother.delay_ticks() as f64 / self.rate_hz } else { 0.0 };
+                let end = begin + plan.revolutions();
+                loop {
+                    self.look_at_panel();
+                    let turns = next_turns(self);
+                    let since = turns - begin + lead_s * per_second;
+                    if turns >= end + lead_s * per_second || per_second == 0.0 {
+                        break;
+                    }
+                    let (place, line) = chain.at(plan.way_mm(since));
+                    let place = if is_bent { self.smoother.next(&place) } else { place };
+                    self.give(place, 0.0, Kind::Threading, Block { line, ..block }, sink);
+                }
+                self.now_s = self.next_s();
+            }
+            // No thread that a machine could cut: the axes go there, and the alarm says why.
+            Err(_) => self.stand(chain.seconds, Kind::Threading, block, sink),
+        }
+        self.smoother.stand(&self.clock.place());
+    }
+
+    /// When the last sample was.
+    fn last_s(&self) -> f64 {
+        self.tick.saturating_sub(1) as f64 / self.rate_hz
+    }
+}

@@ -1,0 +1,196 @@
+//! The schedule: what each command takes on a machine whose axes have mass.
+//!
+//! In: commands in order of execution. Out: each of them with its [`Timing`], in the same order, as soon as it is
+//! known. How long a cut takes depends on the cuts behind it, so it comes out later than it went in.
+//!
+//! Without [`MachineRates::dynamics`] the times are those of the [`Clock`], at once.
+
+use std::collections::VecDeque;
+
+use turnwright_canon::{Action, Command, PathMode};
+use turnwright_units::{Position, WorkTip};
+
+use crate::clock::{Clock, Timing};
+use crate::orders::leg_limit;
+use crate::run::{CuttingRun, LEGS_MAX};
+use crate::{Dynamics, ESTIMATES, ESTIMATES_WITH_DYNAMICS, MachineRates};
+
+/// A command in the run that is being planned.
+#[derive(Debug)]
+struct Entry {
+    command: Command,
+    timing: Timing,
+    /// Legs that are not over yet.
+    legs: u32,
+    /// All its legs have been taken up.
+    is_complete: bool,
+}
+
+/// Measures commands with the planner.
+#[derive(Debug)]
+pub struct Schedule {
+    clock: Clock,
+    planning: Option<Box<Planning>>,
+    /// Commands whose time is known.
+    known: VecDeque<(Command, Timing)>,
+}
+
+/// The run in progress.
+#[derive(Debug)]
+struct Planning {
+    dynamics: Dynamics,
+    run: CuttingRun,
+    entries: VecDeque<Entry>,
+    /// When the last leg that is over was.
+    passed_s: f64,
+    mode: PathMode,
+    has_others: bool,
+}
+
+impl Schedule {
+    /// The tool tip at `start`, the spindle standing.
+    pub fn new(start: Position<WorkTip>, rates: MachineRates) -> Self {
+        let planning = rates.dynamics.filter(|dynamics| dynamics.first_fault().is_none()).map(|dynamics| {
+            Box::new(Planning {
+                dynamics,
+                run: CuttingRun::new(dynamics),
+                entries: VecDeque::new(),
+                passed_s: 0.0,
+                mode: PathMode::Continuous,
+                has_others: false,
+            })
+        });
+        Self { clock: Clock::new(start, rates), planning, known: VecDeque::new() }
+    }
+
+    /// Commands whose time is unknown because nothing would turn or move.
+    pub const fn unknown_feeds(&self) -> u64 {
+        self.clock.unknown_feeds()
+    }
+
+    /// What the times rest on besides the program: keys of sentences in the report.
+    pub const fn estimates(&self) -> &'static [&'static str] {
+        if self.planning.is_some() { ESTIMATES_WITH_DYNAMICS } else { ESTIMATES }
+    }
+
+    /// The next command.
+    pub fn push(&mut self, command: Command) {
+        let Some(planning) = &mut self.planning else {
+            let timing = self.clock.advance(&command);
+            self.known.push_back((command, timing));
+            return;
+        };
+        if let Action::PathMode(mode) = &command.action {
+            planning.mode = *mode;
+        }
+        let goes_on = match &command.action {
+            Action::Feed { others, .. } => {
+                planning.run.is_open()
+                    && planning.mode != PathMode::ExactStop
+                    && others.is_some() == planning.has_others
+                    && !self.clock.would_wait()
+            }
+            Action::PathMode(_) | Action::Message(_) | Action::Output(_) => {
+                planning.run.is_open() && planning.entries.len() < 2 * LEGS_MAX
+            }
+            _ => false,
+        };
+        if !goes_on {
+            planning.end_run(&mut self.clock, &mut self.known);
+        }
+        planning.add(command, &mut self.clock, &mut self.known);
+    }
+
+    /// No more commands come: all times are known.
+    pub fn finish(&mut self) {
+        if let Some(planning) = &mut self.planning {
+            planning.end_run(&mut self.clock, &mut self.known);
+        }
+    }
+
+    /// The next command whose time is known, with it.
+    pub fn next_known(&mut self) -> Option<(Command, Timing)> {
+        self.known.pop_front()
+    }
+}
+
+impl Planning {
+    fn add(&mut self, command: Command, clock: &mut Clock, known: &mut VecDeque<(Command, Timing)>) {
+        let order = clock.cut_order(&command.action);
+        let Some(order) = order else {
+            let timing = clock.advance(&command);
+            if self.run.is_open() {
+                self.entries.push_back(Entry { command, timing, legs: 0, is_complete: true });
+            } else {
+                known.push_back((command, timing));
+            }
+            return;
+        };
+        let before = clock.turning_spindle();
+        let mut after = clock.clone();
+        let timing = after.advance(&command);
+        if !self.run.is_open() {
+            self.has_others = order.has_others;
+            let limits = self.dynamics.cutting(self.has_others);
+            let mut spindle = before;
+            if timing.waited_s > 0.0 || before.ramp_rpm_per_s == 0.0 {
+                spindle.rpm = clock.spindle_order().rpm_at(clock.position().x.to_mm());
+            }
+            self.run.begin(limits, spindle);
+            self.passed_s = 0.0;
+        }
+        let waiting = Timing { seconds: timing.waited_s, ..timing };
+        self.entries.push_back(Entry {
+            timing: waiting,
+            command: command.clone(),
+            legs: 0,
+            is_complete: false,
+        });
+        for leg in order.legs().filter(|leg| leg.length_mm > 0.0) {
+            while !self.run.has_room() {
+                self.run.plan();
+                self.take(known);
+            }
+            let limit = leg_limit(&leg, clock, &self.dynamics, self.run.pace.limits());
+            if let Some(entry) = self.entries.back_mut() {
+                entry.legs += 1;
+            }
+            self.run.push(leg, order.order, limit);
+        }
+        if let Some(entry) = self.entries.back_mut() {
+            entry.is_complete = true;
+        }
+        *clock = after;
+    }
+
+    /// Takes the times that are known.
+    fn take(&mut self, known: &mut VecDeque<(Command, Timing)>) {
+        while let Some(entry) = self.entries.front_mut() {
+            while entry.legs > 0 {
+                let Some(end_s) = self.run.take_end() else { return };
+                entry.timing.seconds += end_s - self.passed_s;
+                self.passed_s = end_s;
+                entry.legs -= 1;
+            }
+            if !entry.is_complete {
+                return;
+            }
+            if let Some(Entry { command, timing, .. }) = self.entries.pop_front() {
+                known.push_back((command, timing));
+            }
+        }
+    }
+
+    /// Comes to rest.
+    fn end_run(&mut self, clock: &mut Clock, known: &mut VecDeque<(Command, Timing)>) {
+        if !self.run.is_open() {
+            return;
+        }
+        self.run.close(self.mode);
+        while !self.entries.is_empty() {
+            self.run.plan();
+            self.take(known);
+        }
+        clock.lag_behind(self.run.spindle.rpm);
+    }
+}

@@ -1,0 +1,309 @@
+//! Laws of the pace on seeded random paths: no limit is passed, nothing depends on how the path comes in, the
+//! operator may come between at any time.
+
+use turnwright_motion::planner::{Feedrate, Pace, RunLimits};
+
+/// xorshift64*, seeded: a failure names its case.
+#[derive(Clone)]
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
+    }
+
+    fn part(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Between two positive values, all sizes alike.
+    fn size(&mut self, low: f64, high: f64) -> f64 {
+        low * (high / low).powf(self.part())
+    }
+}
+
+/// Length (0 for a corner), ordered speed, limit.
+type Piece = (f64, f64, f64);
+
+#[derive(Clone, Debug)]
+struct Case {
+    limits: RunLimits,
+    pieces: Vec<Piece>,
+}
+
+impl Case {
+    fn random(seed: u64) -> Self {
+        let mut random = Random(0x9e37_79b9_7f4a_7c15 ^ (seed + 1).wrapping_mul(0x5851_f42d_4c95_7f2d));
+        let acceleration = random.size(200.0, 8000.0);
+        let limits = RunLimits {
+            acceleration_mm_per_s2: acceleration,
+            jerk_mm_per_s3: acceleration / random.size(0.004, 0.12),
+        };
+        let longest = if random.next().is_multiple_of(2) { 200.0 } else { 2.0 };
+        let mut pieces = Vec::new();
+        for _ in 0..1 + random.next() % 40 {
+            let limit = random.size(0.5, 400.0);
+            let ordered = if random.next().is_multiple_of(3) { random.size(0.5, 400.0) } else { limit };
+            pieces.push((random.size(0.005, longest), ordered, limit));
+            if random.next().is_multiple_of(2) {
+                pieces.push((0.0, f64::INFINITY, random.size(0.1, 100.0)));
+            }
+        }
+        Self { limits, pieces }
+    }
+
+    fn length(&self) -> f64 {
+        self.pieces.iter().map(|piece| piece.0).sum()
+    }
+
+    fn pace(&self) -> Pace {
+        let mut pace = Pace::with_capacity(256, self.limits);
+        for (length, ordered, limit) in &self.pieces {
+            pace.push(*length, *ordered, *limit).expect("room");
+        }
+        pace.close();
+        pace
+    }
+
+    /// The lowest cap at or beside a place.
+    fn cap(&self, at: f64, factor: f64) -> f64 {
+        let near = 1e-12 * (1.0 + self.length());
+        let mut start = 0.0;
+        let mut lowest = f64::INFINITY;
+        for (length, ordered, limit) in &self.pieces {
+            if at > start + near && at < start + length - near || *length == 0.0 && (at - start).abs() < near
+            {
+                lowest = f64::min(lowest, (ordered * factor).min(*limit));
+            }
+            start += length;
+        }
+        lowest
+    }
+}
+
+/// Looks at every sample: place, and by differences speed, acceleration and jerk.
+struct Inspector {
+    step_s: f64,
+    last: [f64; 4],
+}
+
+impl Inspector {
+    fn new(step_s: f64, at: f64) -> Self {
+        Self { step_s, last: [at; 4] }
+    }
+
+    fn look(&mut self, at: f64, limits: RunLimits, what: &dyn std::fmt::Debug) {
+        self.last = [self.last[1], self.last[2], self.last[3], at];
+        let [p0, p1, p2, p3] = self.last;
+        let acceleration = (p3 - 2.0 * p2 + p1) / self.step_s.powi(2);
+        let jerk = (p3 - 3.0 * p2 + 3.0 * p1 - p0) / self.step_s.powi(3);
+        // The places themselves are good to a few units in the last place.
+        let noise = 16.0 * f64::EPSILON * (at.abs() + 1.0);
+        assert!(p3 >= p2 - noise, "goes back from {p2} to {p3}: {what:?}");
+        let most = limits.acceleration_mm_per_s2 * (1.0 + 1e-7) + noise / self.step_s.powi(2);
+        assert!(acceleration.abs() <= most, "acceleration {acceleration} at {at}: {what:?}");
+        let most = limits.jerk_mm_per_s3 * (1.0 + 1e-6) + noise / self.step_s.powi(3);
+        assert!(jerk.abs() <= most, "jerk {jerk} of {most} at {at}: {what:?}");
+    }
+}
+
+#[test]
+fn no_sample_passes_a_limit_and_the_end_is_exact() {
+    for seed in 0..3000 {
+        let case = Case::random(seed);
+        let mut pace = case.pace();
+        pace.plan();
+        let duration = pace.duration_s().expect("all is planned");
+        let step = duration / 400.0;
+        let mut inspector = Inspector::new(step, 0.0);
+        let mut time = 0.0;
+        while time < duration + 4.0 * step {
+            let state = pace.at(time);
+            inspector.look(state.at_mm, case.limits, &(seed, time));
+            let cap = case.cap(state.at_mm, 1.0);
+            assert!(
+                state.speed_mm_per_s <= cap * (1.0 + 1e-6) + 1e-9,
+                "{} above {cap} at {} {seed}",
+                state.speed_mm_per_s,
+                state.at_mm
+            );
+            time += step;
+        }
+        let end = pace.at(duration + 1e-9);
+        assert!((end.at_mm - case.length()).abs() <= 1e-9 * (1.0 + case.length()), "{seed} {end:?}");
+        assert_eq!(end.speed_mm_per_s.abs().max(1e-6), 1e-6, "{seed}");
+    }
+}
+
+/// Feeds a path in bursts and plays it at the same time, with little room. Every place as bits.
+fn played(case: &Case, mut burst: impl FnMut() -> usize, step: f64, capacity: usize) -> Vec<u64> {
+    let mut pace = Pace::with_capacity(capacity, case.limits);
+    let mut pieces = case.pieces.iter();
+    let mut places = Vec::new();
+    let mut next = pieces.next();
+    let mut tick = 0u32;
+    loop {
+        for _ in 0..burst() {
+            let Some((length, ordered, limit)) = next else { break };
+            if pace.push(*length, *ordered, *limit).is_err() {
+                break;
+            }
+            next = pieces.next();
+        }
+        if next.is_none() {
+            pace.close();
+        }
+        pace.plan();
+        let until = pace.duration_s().unwrap_or_else(|| pace.planned_s());
+        while f64::from(tick) * step <= until {
+            places.push(pace.at(f64::from(tick) * step).at_mm.to_bits());
+            pace.forget_before(f64::from(tick) * step);
+            tick += 1;
+        }
+        if pace.duration_s().is_some() {
+            return places;
+        }
+    }
+}
+
+#[test]
+fn the_same_bits_whatever_the_chunks_and_run_after_run() {
+    for seed in 0..400 {
+        let mut case = Case::random(seed);
+        let more = Case::random(seed + 5000);
+        case.pieces.extend(more.pieces);
+        let pace = {
+            let mut pace = case.pace();
+            pace.plan();
+            pace
+        };
+        let step = pace.duration_s().expect("planned") / 300.0;
+        let whole = played(&case, || usize::MAX, step, 256);
+        let mut random = Random(seed + 17);
+        let chunks = played(&case, || 1 + (random.next() % 5) as usize, step, 256);
+        let single = played(&case, || 1, step, 256);
+        assert!(whole == chunks, "{seed}");
+        assert!(whole == single, "{seed}");
+        assert!(whole == played(&case, || usize::MAX, step, 256), "{seed}");
+    }
+}
+
+#[test]
+fn little_room_is_slower_but_safe() {
+    for seed in 0..100 {
+        let mut random = Random(seed + 1);
+        let mut case = Case::random(seed);
+        // Braking takes many more pieces than there is room for.
+        case.pieces = (0..400).map(|_| (0.02, 100.0 + random.part(), 300.0)).collect();
+        let places = played(&case, || usize::MAX, 1e-3, 16);
+        let mut inspector = Inspector::new(1e-3, 0.0);
+        for place in &places {
+            inspector.look(f64::from_bits(*place), case.limits, &seed);
+        }
+        assert!((f64::from_bits(places[places.len() - 1]) - case.length()).abs() < 1e-3, "{seed}");
+    }
+}
+
+#[test]
+fn the_operator_may_come_between_at_any_time() {
+    for seed in 0..600 {
+        let case = Case::random(seed);
+        let mut pace = case.pace();
+        let mut random = Random(seed * 31 + 7);
+        pace.plan();
+        let step = (pace.duration_s().expect("planned") / 300.0).clamp(2e-4, 2e-3);
+        let mut inspector = Inspector::new(step, 0.0);
+        let (mut held, mut since) = (false, 0);
+        let mut slowest_factor_allowed = f64::INFINITY;
+        for tick in 0..60_000 {
+            let time = f64::from(tick) * step;
+            if random.next().is_multiple_of(60) && tick < 20_000 {
+                let factor = if random.next().is_multiple_of(4) { 1.0 } else { random.size(0.1, 2.5) };
+                held = random.next().is_multiple_of(3);
+                pace.interrupt(time, Feedrate::Override(factor), held);
+                pace.plan();
+                since = tick;
+                slowest_factor_allowed = 2.5;
+            } else if tick == 20_000 {
+                held = false;
+                pace.interrupt(time, Feedrate::Override(1.0), false);
+                pace.plan();
+            }
+            let state = pace.at(time);
+            inspector.look(state.at_mm, case.limits, &(seed, tick, time));
+            let cap = case.cap(state.at_mm, slowest_factor_allowed);
+            assert!(state.speed_mm_per_s <= cap * (1.0 + 1e-6) + 1e-9, "{seed} {tick} {state:?} {cap}");
+            // Half a second of braking and averaging, then a hold has stopped it for good.
+            let stopping_s = 400.0 / case.limits.acceleration_mm_per_s2 + 2.0 * case.limits.window_s();
+            if held && f64::from(tick - since) * step > stopping_s {
+                assert!(state.speed_mm_per_s.abs() < 1e-6, "{seed} {tick} {state:?}");
+                assert!(pace.is_resting(time), "{seed}");
+            }
+            pace.forget_before(time);
+            if !held && pace.duration_s().is_some_and(|duration| time > duration) {
+                break;
+            }
+        }
+        let end = pace.duration_s().expect("it ends");
+        assert!((pace.at(end + 1e-9).at_mm - case.length()).abs() < 1e-8, "{seed}");
+    }
+}
+
+#[test]
+fn a_higher_override_is_never_later() {
+    for seed in 0..300 {
+        let case = Case::random(seed);
+        let mut last = f64::INFINITY;
+        for percent in [10, 50, 80, 100, 120, 200] {
+            let mut pace = Pace::with_capacity(256, case.limits);
+            pace.preset(Feedrate::Override(f64::from(percent) / 100.0), false);
+            for (length, ordered, limit) in &case.pieces {
+                pace.push(*length, *ordered, *limit).expect("room");
+            }
+            pace.close();
+            pace.plan();
+            let duration = pace.duration_s().expect("planned");
+            // Caps widen with their speed: near the start of a slow stretch half a percent may be lost.
+            assert!(duration <= last * 1.005, "{seed} {percent} {duration} after {last}");
+            last = duration;
+        }
+    }
+}
+
+#[test]
+fn the_way_back_takes_as_long() {
+    for seed in 0..400 {
+        let mut case = Case::random(seed);
+        let seconds = |case: &Case| {
+            let mut pace = case.pace();
+            pace.plan();
+            pace.duration_s().expect("planned")
+        };
+        let there = seconds(&case);
+        case.pieces.reverse();
+        let back = seconds(&case);
+        assert!((there - back).abs() <= 1e-6 * there, "{seed} {there} {back}");
+    }
+}
+
+#[test]
+fn a_way_from_rest_to_rest_is_known_in_closed_form() {
+    let mut random = Random(99);
+    for _ in 0..2000 {
+        let acceleration = random.size(100.0, 10_000.0);
+        let limits = RunLimits {
+            acceleration_mm_per_s2: acceleration,
+            jerk_mm_per_s3: acceleration / random.size(0.001, 0.1),
+        };
+        let (way, speed) = (random.size(1e-4, 1000.0), random.size(0.1, 500.0));
+        let mut pace = Pace::with_capacity(4, limits);
+        pace.push(way, speed, 1e9).expect("room");
+        pace.close();
+        pace.plan();
+        let (closed, planned) = (limits.rest_to_rest_s(way, speed), pace.duration_s().expect("planned"));
+        assert!((closed - planned).abs() < 1e-8 * closed, "{limits:?} {way} {speed}: {closed} {planned}");
+    }
+}
