@@ -18,8 +18,6 @@ pub(crate) struct Knife<'a> {
     pub(crate) from: f64,
     pub(crate) to: f64,
     pub(crate) removed: Removed,
-    /// What is left is not seen to hang together; it may, further off.
-    pub(crate) may_part: bool,
     stops: &'a mut Stops,
 }
 
@@ -28,6 +26,8 @@ pub(crate) struct Knife<'a> {
 pub(crate) struct Stops {
     coarse: Places,
     fine: Places,
+    /// See [`Knife::doubt`].
+    pub(crate) doubts: Vec<(f64, f64)>,
 }
 
 /// The sides of a stencil that lie within some material; a side that does not passes all of it by.
@@ -40,7 +40,13 @@ pub(crate) struct Reach {
 impl<'a> Knife<'a> {
     pub(crate) fn new(stencil: &'a Stencil, stops: &'a mut Stops) -> Self {
         let (from, to) = (stencil.lower.from, stencil.lower.to().min(stencil.upper.to()));
-        Self { stencil, from, to, removed: Removed::default(), may_part: false, stops }
+        stops.doubts.clear();
+        Self { stencil, from, to, removed: Removed::default(), stops }
+    }
+
+    /// Between these Z, what is left is not seen to hang together; it may, further off.
+    pub(crate) fn doubt(&mut self, ends: (f64, f64)) {
+        self.stops.doubts.push(ends);
     }
 
     /// How the stencil lies to the rectangle between two Z and two X; `None` when it misses it.
@@ -64,7 +70,7 @@ impl<'a> Knife<'a> {
 
     /// Writes what is left of a slab; false when that is all of it.
     pub(crate) fn carve(&mut self, slab: &Slab, bands: &[Band], reach: Reach, left: &mut Run) -> bool {
-        let Self { stencil, stops: Stops { coarse, fine }, removed, .. } = self;
+        let Self { stencil, stops: Stops { coarse, fine, .. }, removed, .. } = self;
         coarse.restart(slab.from, slab.to);
         coarse.add(self.from);
         coarse.add(self.to);

@@ -116,7 +116,7 @@ impl Row {
         if hangs_together(self.slabs_between(from, to)) {
             return true;
         }
-        let mut margin = 0.0;
+        let mut margin = to - from;
         loop {
             let (low, high) = (from - margin, to + margin);
             let mut bonds = Bonds::of(self.slabs_between(low, high));
@@ -130,7 +130,7 @@ impl Row {
             if low <= start && end <= high {
                 return false;
             }
-            margin = 4.0 * margin + (to - from) + 1.0;
+            margin *= 4.0;
         }
     }
 }

@@ -46,6 +46,20 @@ struct Chunk {
     run: Run,
 }
 
+/// Memory for what a cut leaves: of the slabs that it changes in a chunk, and of one of them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Left {
+    pub(crate) all: Run,
+    one: Run,
+}
+
+/// Whether a change reached the first and the last slab of a chunk.
+#[derive(Clone, Copy, Debug, Default)]
+struct Touched {
+    start: bool,
+    end: bool,
+}
+
 /// All slabs of a section.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Row {
@@ -62,6 +76,11 @@ impl Run {
 
     pub(crate) fn len(&self) -> usize {
         self.slabs.len()
+    }
+
+    /// Where the first slab begins and the last ends.
+    fn ends(&self) -> Option<(f64, f64)> {
+        Some((self.slabs.first()?.from, self.slabs.last()?.to))
     }
 
     fn first_band(&self, slab: usize) -> usize {
@@ -168,41 +187,38 @@ impl Chunk {
 
     /// See [`Row::carve`]. Slabs beside changed ones are written anew too, so that what is now the same becomes one;
     /// those further off are not touched.
-    fn carve(&mut self, knife: &mut Knife<'_>, left: &mut Run) -> bool {
-        let (from, to) = (knife.from, knife.to);
-        left.clear();
+    fn carve(&mut self, knife: &mut Knife<'_>, left: &mut Left) -> Option<Touched> {
+        let Left { all, one } = left;
+        all.clear();
         let run = &self.run;
-        let first = run.slabs.partition_point(|slab| slab.to <= from + WELD_MM);
+        let first = run.slabs.partition_point(|slab| slab.to <= knife.from + WELD_MM);
         let mut written: Option<Range<usize>> = None;
-        let mut is_changed = false;
         for index in first..run.len() {
             let (slab, bands) = run.slab(index);
-            if slab.from >= to - WELD_MM {
+            if slab.from >= knife.to - WELD_MM {
                 break;
             }
             let Some(reach) = knife.reach(slab.from, slab.to, slab.low, slab.high) else { continue };
+            one.clear();
+            if !knife.carve(slab, bands, reach, one) {
+                continue;
+            }
             let before = index.saturating_sub(1);
-            knife.may_part |= index == 0;
             let written = written.get_or_insert(before..before);
-            (written.end..index)
-                .map(|index| run.slab(index))
-                .for_each(|(slab, bands)| left.copy(slab, bands));
+            (written.end..index).map(|index| run.slab(index)).for_each(|(slab, bands)| all.copy(slab, bands));
+            one.slabs().for_each(|(slab, bands)| all.copy(slab, bands));
             written.end = index + 1;
-            is_changed |= knife.carve(slab, bands, reach, left);
         }
-        let Some(mut written) = written.filter(|_| is_changed) else { return false };
-        if written.end < run.len() {
+        let mut written = written?;
+        let touched = Touched { start: written.start == 0, end: written.end == run.len() };
+        if !touched.end {
             let (slab, bands) = run.slab(written.end);
-            left.copy(slab, bands);
+            all.copy(slab, bands);
             written.end += 1;
-        } else {
-            knife.may_part = true;
         }
-        // What lies beside the first and the last slab of a chunk is not looked at here.
-        knife.may_part |= !hangs_together(left.slabs());
-        self.run.replace(written, left);
+        self.run.replace(written, all);
         self.measure();
-        true
+        Some(touched)
     }
 
     fn measure(&mut self) {
@@ -271,16 +287,19 @@ impl Row {
     }
 
     /// Puts in the place of each slab what a knife leaves of it; `left` is memory for that.
-    pub(crate) fn carve(&mut self, knife: &mut Knife<'_>, left: &mut Run) {
+    pub(crate) fn carve(&mut self, knife: &mut Knife<'_>, left: &mut Left) {
         let (from, to) = (knife.from, knife.to);
         let mut index = self.chunks.partition_point(|chunk| chunk.to <= from + WELD_MM);
         let mut emptied: Option<usize> = None;
         while let Some(chunk) = self.chunks.get_mut(index).filter(|chunk| chunk.from < to - WELD_MM) {
-            if knife.reach(chunk.from, chunk.to, chunk.low, chunk.high).is_some() && chunk.carve(knife, left)
+            if knife.reach(chunk.from, chunk.to, chunk.low, chunk.high).is_some()
+                && let Some(touched) = chunk.carve(knife, left)
             {
-                if chunk.run.len() == 0 {
+                let is_empty = chunk.run.len() == 0;
+                self.look_round(index, touched, &left.all, knife);
+                if is_empty {
                     emptied.get_or_insert(index);
-                } else if chunk.run.len() > CHUNK_SLABS_MAX {
+                } else if self.chunks[index].run.len() > CHUNK_SLABS_MAX {
                     self.part(index);
                     index += 1;
                 }
@@ -289,6 +308,20 @@ impl Row {
         }
         if let Some(first) = emptied {
             self.drop_empty(first..index);
+        }
+    }
+
+    /// Sees whether what was written to a chunk hangs together with what lies beside it in the chunks on both sides.
+    fn look_round(&self, index: usize, touched: Touched, left: &Run, knife: &mut Knife<'_>) {
+        let runs = |range: Range<usize>| {
+            self.chunks[range].iter().map(|chunk| &chunk.run).filter(|run| run.len() > 0)
+        };
+        let before = runs(0..index).next_back().filter(|_| touched.start).map(|run| run.slab(run.len() - 1));
+        let behind = runs(index + 1..self.chunks.len()).next().filter(|_| touched.end).map(|run| run.slab(0));
+        if !hangs_together(before.into_iter().chain(left.slabs()).chain(behind)) {
+            let chunk = &self.chunks[index];
+            let (from, to) = left.ends().unwrap_or((chunk.from, chunk.to));
+            knife.doubt((before.map_or(from, |(slab, _)| slab.to), behind.map_or(to, |(slab, _)| slab.from)));
         }
     }
 

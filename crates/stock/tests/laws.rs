@@ -15,8 +15,22 @@ fn cut(section: &mut Section, sweep: &mut Sweep, tool: &Outline, way: &Way) -> R
 fn job(random: &mut Random, count: usize) -> (Section, Vec<(Outline, Way)>) {
     let blank =
         if random.chance(2) { Section::bar(20.0, -40.0, 0.0) } else { Section::tube(6.0, 20.0, -40.0, 0.0) };
+    let mut blank = blank.expect("a blank");
+    if random.chance(5) {
+        notch(&mut blank);
+    }
     let cuts = (0..count).map(|_| (random.tool(), random.way())).collect();
-    (blank.expect("a blank"), cuts)
+    (blank, cuts)
+}
+
+/// Small notches all along the outside, so that the section is held in many chunks.
+fn notch(blank: &mut Section) {
+    let disc = Cutter::new(&Outline::circle(Point::default(), 0.15).expect("a disc"));
+    let mut sweep = Sweep::new();
+    for index in 0..130 {
+        blank.cut(sweep.rest(&disc, point(20.0, -0.3 * f64::from(index) - 0.2)));
+    }
+    assert!(blank.slab_count() > 100);
 }
 
 #[test]
