@@ -92,9 +92,12 @@ pub(crate) struct Machine {
     /// The program was typed in at the panel: G70 to G73, jumps and loops are refused in it
     #[arg(long)]
     pub(crate) mdi: bool,
-    /// Treats warnings as errors
-    #[arg(long, value_enum, value_name = "WHAT")]
-    pub(crate) deny: Option<Deny>,
+    /// Treats a warning as an error: its name or number, or "warnings" for all; may be repeated
+    #[arg(long, value_name = "NAME|warnings", value_delimiter = ',')]
+    pub(crate) deny: Vec<String>,
+    /// Does not tell a warning: its name or number; may be repeated
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub(crate) allow: Vec<String>,
     /// Blocks executed before the run is stopped
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) max_blocks: Option<u64>,
@@ -104,13 +107,6 @@ pub(crate) struct Machine {
     /// Writes what the program prints with DPRNT and BPRNT to this file
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     pub(crate) program_output: Option<PathBuf>,
-}
-
-/// What is not tolerated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Deny {
-    /// Warnings count as errors
-    Warnings,
 }
 
 /// The form of diagnostics and reports.

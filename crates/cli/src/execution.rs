@@ -5,13 +5,14 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use turnwright_canon::{Action, Command};
-use turnwright_diagnostics::{Diagnostic, Severity, SourceId};
+use turnwright_diagnostics::{Diagnostic, SourceId};
 use turnwright_interpreter::{Interpreter, Options, Step};
 
-use crate::arguments::{Deny, Machine};
+use crate::arguments::Machine;
 use crate::environment::{Panel, ProgramText};
 use crate::finding::Finding;
 use crate::session::Session;
+use crate::switches::Switches;
 
 /// A run of one program.
 #[derive(Debug)]
@@ -19,9 +20,9 @@ pub(crate) struct Execution<'a> {
     interpreter: Interpreter,
     panel: Panel<'a>,
     text: &'a ProgramText,
-    denies_warnings: bool,
+    switches: Switches,
     alarm: Option<Diagnostic>,
-    early: Option<Diagnostic>,
+    early: Vec<Diagnostic>,
     /// Warnings of those who looked at the commands.
     added: Vec<Diagnostic>,
     /// Number of the program that gave the last command.
@@ -74,15 +75,16 @@ impl<'a> Execution<'a> {
             blocks_max: machine.max_blocks.unwrap_or(usual.blocks_max),
             idle_blocks_max: machine.max_idle_blocks.unwrap_or(usual.idle_blocks_max),
         };
+        let switches = Switches::new(session, machine)?;
         let interpreter = Interpreter::new(session.control.clone(), &session.setup, SourceId(0), options)
             .map_err(|fault| session.setup_fault(&fault))?;
         Ok(Self {
             interpreter,
             panel: Panel::new(text, machine, &session.setup),
             text,
-            denies_warnings: machine.deny == Some(Deny::Warnings),
+            switches,
             alarm: None,
-            early: session.warning.clone(),
+            early: session.warnings.clone(),
             added: Vec::new(),
             program: None,
             output: machine.program_output.as_deref().map(ProgramOutput::create).transpose()?,
@@ -151,11 +153,12 @@ impl<'a> Execution<'a> {
     /// The warnings since the last call.
     pub(crate) fn take_warnings(&mut self) -> Vec<Finding> {
         let fault = self.output.as_mut().and_then(ProgramOutput::finish);
-        let early = self.early.take();
+        let early = std::mem::take(&mut self.early);
         let added = std::mem::take(&mut self.added);
         let warnings: Vec<Diagnostic> =
             early.into_iter().chain(self.interpreter.take_warnings()).chain(added).collect();
-        warnings.into_iter().map(|warning| self.finding(warning)).chain(fault).collect()
+        let told = warnings.into_iter().filter(|warning| !self.switches.allows(warning));
+        told.map(|warning| self.finding(warning)).chain(fault).collect()
     }
 
     /// Adds a warning about the commands.
@@ -179,9 +182,7 @@ impl<'a> Execution<'a> {
     }
 
     fn finding(&self, mut diagnostic: Diagnostic) -> Finding {
-        if self.denies_warnings && diagnostic.severity == Severity::Warning {
-            diagnostic.severity = Severity::Error;
-        }
+        self.switches.judge(&mut diagnostic);
         let is_unreadable = diagnostic.key == "file-unreadable";
         let source = diagnostic.place.map_or(SourceId(0), |place| place.source);
         let text = self.panel.source(source);

@@ -19,6 +19,7 @@ mod render;
 mod report;
 mod session;
 mod speech;
+mod switches;
 mod table;
 
 use std::process::ExitCode;

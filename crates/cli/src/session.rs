@@ -11,7 +11,7 @@ use turnwright_control::{
     Control, ControlFault, DEFAULT_CONTROL, Language, Mode, ParameterFault, Setup, SetupFault, control_names,
     nearest, setup_comment,
 };
-use turnwright_diagnostics::{Diagnostic, Place, SourceId};
+use turnwright_diagnostics::{Diagnostic, Place, Severity, SourceId};
 use turnwright_syntax::{LineEnd, find_line_end};
 
 use crate::arguments::Machine;
@@ -67,18 +67,18 @@ pub(crate) struct Session {
     pub(crate) setup: Setup,
     /// Its file, if there is one.
     pub(crate) setup_path: Option<PathBuf>,
-    /// A comment that looks like a directive and is none.
-    pub(crate) warning: Option<Diagnostic>,
+    /// Comments that look like directives and are none.
+    pub(crate) warnings: Vec<Diagnostic>,
 }
 
 impl Session {
     /// Chooses control and setup for a program.
     pub(crate) fn choose(text: &ProgramText, options: &Machine, speech: Speech) -> Result<Self, Finding> {
-        let (mut setup, setup_path) = find_setup(text, options, speech)?;
+        let mut warnings = Vec::new();
+        let (mut setup, setup_path) = find_setup(text, options, speech, &mut warnings)?;
         if options.mdi {
             setup.start.mode = Mode::Mdi;
         }
-        let mut warning = None;
         let (mut control, reason) = if let Some(name) = &options.control {
             (load_control(name, "", speech)?, Reason::Option)
         } else {
@@ -88,7 +88,7 @@ impl Session {
                 }
                 Directive::Unknown(finding) => return Err(*finding),
                 Directive::None(odd) => {
-                    warning = odd;
+                    warnings.extend(odd);
                     match (&setup.control, &setup_path) {
                         (Some(name), Some(path)) => {
                             (load_control(name, &path.display().to_string(), speech)?, Reason::Setup)
@@ -101,7 +101,7 @@ impl Session {
         let file = setup_path.as_ref().map_or(String::new(), |path| path.display().to_string());
         set_parameters(&mut control, &setup.parameter_words(), &file, speech)?;
         set_parameters(&mut control, &options.parameters, "", speech)?;
-        Ok(Self { control, reason, setup, setup_path, warning })
+        Ok(Self { control, reason, setup, setup_path, warnings })
     }
 
     /// A setup whose machine or values make no sense.
@@ -176,6 +176,7 @@ fn find_setup(
     text: &ProgramText,
     options: &Machine,
     speech: Speech,
+    warnings: &mut Vec<Diagnostic>,
 ) -> Result<(Setup, Option<PathBuf>), Finding> {
     let beside = || {
         let program = text.path.as_ref()?;
@@ -191,22 +192,32 @@ fn find_setup(
     let mut first = None;
     for (place, comment) in head_comments(text) {
         let Some(piece) = setup_comment(&comment) else { continue };
-        let refused = |value: String| comment_refused(text, place, &comment, value);
-        comments.push(piece.map_err(refused)?);
+        match piece {
+            Ok(piece) => comments.push(piece),
+            // A remark that only looks like it must not keep the program from running.
+            Err(value) => {
+                let mut warning = comment_fault(place, &comment, value);
+                warning.severity = Severity::Warning;
+                warnings.push(warning);
+                continue;
+            }
+        }
         first.get_or_insert((place, comment));
     }
     let setup = Setup::with_comments(&content, comments).map_err(|fault| match (first, &path) {
-        (Some((place, comment)), _) => comment_refused(text, place, &comment, fault.message),
+        (Some((place, comment)), _) => {
+            let fault = comment_fault(place, &comment, fault.message);
+            Finding::new(text.name.as_str(), fault).failed().located(text)
+        }
         (None, path) => invalid_setup(path.as_deref().unwrap_or(Path::new("--setup")), &fault),
     })?;
     Ok((setup, path))
 }
 
 /// A comment about the setup that cannot be.
-fn comment_refused(text: &ProgramText, place: Place, comment: &str, value: String) -> Finding {
+fn comment_fault(place: Place, comment: &str, value: String) -> Diagnostic {
     let diagnostic = Diagnostic::error("setup-comment-invalid").at(place);
-    let diagnostic = diagnostic.with("word", format!("({})", comment.trim())).with("value", value);
-    Finding::new(text.name.as_str(), diagnostic).failed().located(text)
+    diagnostic.with("word", format!("({})", comment.trim())).with("value", value)
 }
 
 /// The comments at the head of a program that may be about its setup, with their places.

@@ -41,7 +41,7 @@ fn the_setup_that_is_written_is_found_and_leaves_nothing_to_assume() {
 fn comments_of_the_program_count_before_the_file() {
     let folder = Folder::new();
     let comments = "O1\n(SETUP STOCK D55 L80)\n(setup tool 1 DNMG150608 R0.8)\n";
-    let program = folder.file("part.nc", &PROGRAM.replacen("O1\n", comments, 1));
+    let program = folder.file("part.nc", PROGRAM.replacen("O1\n", comments, 1));
     folder.file("part.toml", "[stock]\ndiameter_mm = 60\nlength_mm = 70\nface_mm = 0.5\n");
     let setup = turnwright(&["setup", &program]).out;
     for line in ["diameter_mm = 55", "length_mm = 80", "face_mm = 0.5", "insert = \"DNMG150608\""] {
@@ -53,12 +53,18 @@ fn comments_of_the_program_count_before_the_file() {
 #[test]
 fn setups_that_cannot_be_are_refused_with_key_and_place() {
     let folder = Folder::new();
-    let program = folder.file("part.nc", &PROGRAM.replacen("O1\n", "O1\n(SETUP STOK D55)\n", 1));
+    // A remark that only looks like it is told and passed over.
+    let program = folder.file("part.nc", PROGRAM.replacen("O1\n", "O1\n(SETUP STOK D55)\n", 1));
+    let ran = turnwright(&["check", &program, "--format", "json"]);
+    let told: Value = serde_json::from_str(ran.out.lines().next().expect("a line")).expect("JSON");
+    assert_eq!((ran.status, told["key"].as_str()), (0, Some("setup-comment-invalid")), "{}", ran.out);
+    assert_eq!((told["line"].as_u64(), told["column"].as_u64()), (Some(2), Some(1)));
+    assert!(told["message"].as_str().is_some_and(|text| text.contains("did you mean STOCK?")));
+    let program = folder.file("tube.nc", PROGRAM.replacen("O1\n", "O1\n(SETUP STOCK D5 L9 BORE9)\n", 1));
     let ran = turnwright(&["check", &program, "--format", "json"]);
     let refused: Value = serde_json::from_str(ran.out.lines().next().expect("a line")).expect("JSON");
     assert_eq!((ran.status, refused["key"].as_str()), (2, Some("setup-comment-invalid")), "{}", ran.out);
-    assert_eq!((refused["line"].as_u64(), refused["column"].as_u64()), (Some(2), Some(1)));
-    assert!(refused["message"].as_str().is_some_and(|text| text.contains("did you mean STOCK?")));
+    assert!(refused["message"].as_str().is_some_and(|text| text.contains("stock.bore_mm")), "{refused}");
     let program = folder.file("bore.nc", PROGRAM);
     folder.file("bore.toml", "[stock]\ndiameter_mm = 30\nlength_mm = 70\nbore_mm = 40\n");
     let ran = turnwright(&["check", &program, "--format", "json"]);
@@ -69,4 +75,29 @@ fn setups_that_cannot_be_are_refused_with_key_and_place() {
         "{refused}"
     );
     assert!(refused["message"].as_str().is_some_and(|text| text.contains("stock.bore_mm")), "{refused}");
+}
+
+#[test]
+fn warnings_are_switched_by_name_or_number() {
+    let folder = Folder::new();
+    let program = folder.file("part.nc", PROGRAM.replace("T0101", "T0102"));
+    let keys = |arguments: &[&str]| -> (i32, Vec<(String, String)>) {
+        let ran = turnwright(&[&["check", &program, "--format", "json"], arguments].concat());
+        let lines = ran.out.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
+        let word = |value: &Value| value.as_str().unwrap_or_default().to_string();
+        (ran.status, lines.map(|line| (word(&line["key"]), word(&line["severity"]))).collect())
+    };
+    let told = |severity: &str| vec![("tool-offset-differs".to_string(), severity.to_string())];
+    assert_eq!(keys(&[]), (0, told("warning")));
+    assert_eq!(keys(&["--allow", "tool-offset-differs"]), (0, Vec::new()));
+    assert_eq!(keys(&["--allow", "T095"]), (0, Vec::new()));
+    assert_eq!(keys(&["--deny", "T095"]), (1, told("error")));
+    assert_eq!(keys(&["--deny", "warnings"]), (1, told("error")));
+    assert_eq!(keys(&["--allow", "tool-ofset-differs"]).0, 2);
+    // The command line counts after the file.
+    folder.file("part.toml", "[checks]\ndeny = [\"tool-offset-differs\"]\n");
+    assert_eq!(keys(&[]), (1, told("error")));
+    assert_eq!(keys(&["--allow", "T095"]), (0, Vec::new()));
+    folder.file("part.toml", "[checks]\nallow = [\"tool-offset-differs\"]\n");
+    assert_eq!(keys(&[]), (0, Vec::new()));
 }

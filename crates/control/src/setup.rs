@@ -279,6 +279,16 @@ impl Default for Start {
     }
 }
 
+/// `[checks]` of a setup file: warnings by name or number.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct CheckSwitches {
+    /// Not told.
+    pub allow: Vec<String>,
+    /// Told as errors.
+    pub deny: Vec<String>,
+}
+
 /// What a setup file says.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -323,6 +333,9 @@ pub struct Setup {
     /// Tools by turret station.
     #[serde(default)]
     pub tools: BTreeMap<String, ToolEntry>,
+    /// Which warnings are switched off, and which count as errors.
+    #[serde(default)]
+    pub checks: CheckSwitches,
     /// Parameters of a punched text that are not known here, or only in part, by number: `"1023" = "A1P1 A2P2"`.
     /// They change nothing and are written out again.
     #[serde(default)]

@@ -6,6 +6,7 @@
 //! (SETUP TAILSTOCK Z-4)                  also ANGLE60, D25, L60, QUILL70
 //! (SETUP TOOL 1 CNMG120408 PCLNR2525M12 R0.8 TIP3)
 //! (SETUP TOOL 2 GROOVING W3 R0.2)        also CUT-OFF, THREADING, DRILLING D20, INSIDE, FACE, LEFT, FRONT …
+//! (SETUP ALLOW tool-offset-differs)      DENY likewise
 //! ```
 //!
 //! Letters may be small, a value may stand behind a blank or `=`, items may be parted by commas. Each item is a key of
@@ -16,6 +17,9 @@ use toml::{Table, Value};
 
 use crate::nearest;
 use crate::tooling::{is_holder, is_insert};
+
+/// What a comment may be about.
+const SECTIONS: [&str; 6] = ["STOCK", "CHUCK", "TAILSTOCK", "TOOL", "ALLOW", "DENY"];
 
 /// Short names of the keys of a section.
 type Keys = &'static [(&'static str, &'static str)];
@@ -91,23 +95,35 @@ const WHOLE: [&str; 2] = ["tip", "rpm_max"];
 pub fn setup_comment(comment: &str) -> Option<Result<Table, String>> {
     let comment = comment.trim().to_ascii_uppercase();
     let rest = comment.strip_prefix("SETUP")?;
-    // SETUPS and SETUP-SHEET are words of their own.
+    // SETUPS and SETUP-SHEET are words of their own; without a number it is a heading or a sentence.
     let is_one_word = rest.starts_with([' ', ':', '=', '\t']);
-    is_one_word.then(|| read(rest))
+    let section = rest.split([' ', '\t', ':', '=']).find(|word| !word.is_empty())?;
+    let switches = ["ALLOW", "DENY"].contains(&section);
+    let is_meant =
+        switches || (rest.contains(|c: char| c.is_ascii_digit()) && nearest(section, SECTIONS).is_some());
+    (is_one_word && is_meant).then(|| read(rest))
 }
 
 fn read(text: &str) -> Result<Table, String> {
     let mut items = text.split([' ', '\t', ',', ':', '=']).filter(|item| !item.is_empty()).peekable();
-    let section = items.next().ok_or("SETUP is followed by STOCK, CHUCK, TAILSTOCK or TOOL")?;
+    let section = items.next().ok_or("SETUP is followed by STOCK, CHUCK, TAILSTOCK, TOOL, ALLOW or DENY")?;
+    if matches!(section, "ALLOW" | "DENY") {
+        let names: Vec<Value> = items.map(|item| Value::String(item.to_ascii_lowercase())).collect();
+        if names.is_empty() {
+            return Err(format!("{section} is followed by names of warnings"));
+        }
+        let switches = Table::from_iter([(section.to_ascii_lowercase(), Value::Array(names))]);
+        return Ok(Table::from_iter([("checks".to_string(), Value::Table(switches))]));
+    }
     let (keys, words): (Keys, &[_]) = match section {
         "STOCK" => (STOCK, &[]),
         "CHUCK" => (CHUCK, CHUCK_WORDS),
         "TAILSTOCK" => (TAILSTOCK, &[]),
         "TOOL" => (TOOL, TOOL_WORDS),
         other => {
-            let near = nearest(other, ["STOCK", "CHUCK", "TAILSTOCK", "TOOL"]);
+            let near = nearest(other, SECTIONS);
             let hint = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-            return Err(format!("{other} is none of STOCK, CHUCK, TAILSTOCK and TOOL{hint}"));
+            return Err(format!("{other} is none of STOCK, CHUCK, TAILSTOCK, TOOL, ALLOW and DENY{hint}"));
         }
     };
     let station = if section == "TOOL" {
@@ -166,11 +182,12 @@ fn no_number(item: &str, number: &str) -> String {
     format!("{item} needs a number, not {number:?}")
 }
 
-/// Lays one piece of a setup over another, key by key.
+/// Lays one piece of a setup over another, key by key; lists are joined.
 pub(crate) fn lay_over(under: &mut Table, over: Table) {
     for (key, value) in over {
-        match (under.get_mut(&key).and_then(Value::as_table_mut), value) {
-            (Some(under), Value::Table(over)) => lay_over(under, over),
+        match (under.get_mut(&key), value) {
+            (Some(Value::Table(under)), Value::Table(over)) => lay_over(under, over),
+            (Some(Value::Array(under)), Value::Array(over)) => under.extend(over),
             (_, value) => {
                 under.insert(key, value);
             }
@@ -199,6 +216,8 @@ mod tests {
             "SETUP TOOL 3 DRILLING D20 POINT118",
             "SETUP TAILSTOCK Z-4",
             "SETUP STOCK BORE20",
+            "SETUP ALLOW tool-offset-differs T106",
+            "SETUP ALLOW stop-in-cut",
         ]);
         let setup = Setup::with_comments("[stock]\ndiameter_mm = 40\n", comments).expect("a setup");
         let stock = setup.stock.clone().expect("stock");
@@ -214,25 +233,28 @@ mod tests {
             (ToolKind::Grooving, ToolSide::Inside, Some(3.0))
         );
         assert_eq!(tools[&3].kind, ToolKind::Drilling);
+        assert_eq!(setup.checks.allow, ["tool-offset-differs", "t106", "stop-in-cut"]);
         assert_eq!(setup.tailstock.and_then(|tailstock| tailstock.point_z_mm), Some(-4.0));
     }
 
     #[test]
     fn other_remarks_are_left_alone_and_wrong_ones_refused() {
-        for remark in ["SETUPS", "SETUP", "SET UP", "ROUGHING", "SETUP-SHEET 4", ""] {
+        for remark in
+            ["SETUPS", "SETUP", "SET UP", "ROUGHING", "SETUP-SHEET 4", "SETUP WORK 54", "SETUP TOOL LIST", ""]
+        {
             assert!(setup_comment(remark).is_none(), "{remark}");
         }
         for (comment, why) in [
             ("SETUP STOK D50", "did you mean STOCK?"),
             ("SETUP STOCK DIAMETR 50", "did you mean DIAMETER?"),
-            ("SETUP STOCK D", "needs a number"),
-            ("SETUP STOCK Dx", "did you mean D?"),
-            ("SETUP STOCK SEVENTY", "known are"),
+            ("SETUP STOCK L5 D", "needs a number"),
+            ("SETUP STOCK Dx5", "did you mean D?"),
+            ("SETUP STOCK SEVENTY5", "known are"),
             ("SETUP STOCK D1e999", "needs a number"),
             ("SETUP TOOL CNMG120408", "number of the turret station"),
             ("SETUP TOOL 1 CNMG12", "not known here"),
             ("SETUP TOOL 1 TIP3.5", "needs a number"),
-            ("SETUP : ", "followed by"),
+            ("SETUP DENY", "followed by"),
         ] {
             let fault = setup_comment(comment).expect(comment).expect_err(comment);
             assert!(fault.contains(why), "{comment}: {fault}");

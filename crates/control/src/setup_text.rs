@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 
 use crate::setup::typed;
-use crate::{Chuck, Language, OffsetRow, OutlinePoint, Setup, Stock, Tailstock, ToolEntry};
+use crate::{CheckSwitches, Chuck, Language, OffsetRow, OutlinePoint, Setup, Stock, Tailstock, ToolEntry};
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -90,6 +90,14 @@ fn tailstock_lines(tailstock: &Tailstock) -> Vec<Line> {
         ("quill_mm", Some(number(tailstock.quill_mm))),
         ("quill_length_mm", Some(number(tailstock.quill_length_mm))),
     ])
+}
+
+fn check_lines(checks: &CheckSwitches) -> Vec<Line> {
+    let names = |names: &[String]| {
+        let names: Vec<String> = names.iter().map(|name| quoted(name)).collect();
+        (!names.is_empty()).then(|| format!("[{}]", names.join(", ")))
+    };
+    given([("allow", names(&checks.allow)), ("deny", names(&checks.deny))])
 }
 
 fn tool_lines(tool: &ToolEntry) -> Vec<Line> {
@@ -224,6 +232,7 @@ impl Setup {
         if let Some(tailstock) = &self.tailstock {
             writer.part("tailstock", tailstock_lines(tailstock));
         }
+        writer.part("checks", check_lines(&self.checks));
         for (name, tool) in by_number(&self.tools) {
             writer.part(&format!("tools.{}", key(name)), tool_lines(tool));
         }
@@ -260,6 +269,7 @@ mod tests {
         diameter_mm = 160\nlength_mm = 80\nrpm_max = 4500\n\
         [tailstock]\npoint_z_mm = -4\npoint_angle_deg = 60\ncentre_mm = 20\ncentre_length_mm = 50\nquill_mm = 60\n\
         quill_length_mm = 100\n\
+        [checks]\nallow = [\"tool-offset-differs\"]\ndeny = [\"stop-in-cut\", \"T095\"]\n\
         [tools.1]\nname = \"rough \\\"A\\\"\"\nkind = \"turning\"\nside = \"outside\"\ninsert = \"CNMG120408\"\n\
         holder = \"PCLNR2525M12\"\nentering_angle_deg = 95\nhand = \"right\"\npost = \"front\"\nnose_radius_mm = 0.8\n\
         tip = 3\nlength_mm = 150\nshank_mm = 25\n\
@@ -303,6 +313,7 @@ mod tests {
         add("stock", stock_lines(forging.stock.as_ref().expect("stock")));
         add("chuck", chuck_lines(whole.chuck.as_ref().expect("chuck")));
         add("tailstock", tailstock_lines(whole.tailstock.as_ref().expect("tailstock")));
+        add("checks", check_lines(&whole.checks));
         whole.tools.values().for_each(|tool| add("tools", tool_lines(tool)));
         for (section, keys) in &mut used {
             keys.sort_unstable();

@@ -36,7 +36,7 @@ fn sources() -> String {
 /// Keys and numbers in the `diagnostics` blocks of the fixtures.
 fn shown() -> BTreeMap<String, BTreeSet<String>> {
     let mut found = Vec::new();
-    files(&root().join("fixtures/interpreter"), "md", &mut found);
+    files(&root().join("fixtures"), "md", &mut found);
     let mut shown: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for file in found {
         let text = fs::read_to_string(&file).expect("readable");

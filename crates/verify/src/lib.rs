@@ -1,11 +1,13 @@
-//! What a whole program shows: the setup it was written for.
+//! What a whole program shows: faults that no single block has, and the setup it was written for.
 //!
-//! In: the commands of a program, one by one, and a [`Setup`](turnwright_control::Setup). Out: what the setup leaves
-//! open, taken from the program, with every [`Assumption`] told as data.
+//! In: the commands of a program, one by one, and a [`Setup`](turnwright_control::Setup). Out: warnings of the
+//! [`Checks`], and what the setup leaves open, taken from the program, with every [`Assumption`] told as data.
 //!
 //! Deliberately not here: the control's own alarms and warnings, which are the interpreter's; sentences, which are in
 //! `data/`.
 
+mod checks;
 mod inference;
 
+pub use checks::{Checked, Checks};
 pub use inference::{Assumption, Inference, Inferred};

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use turnwright_diagnostics::{Diagnostic, Severity};
+use turnwright_verify::Checks;
 
 use crate::arguments::{Check, Format};
 use crate::environment::{ProgramText, STANDARD_INPUT, unreadable};
@@ -167,9 +168,9 @@ fn check(candidate: &Candidate, task: &Task<'_>) -> Checked {
 
 fn find(text: &ProgramText, options: &Check, printer: &Printer) -> Vec<Finding> {
     let started = Session::choose(text, &options.machine, printer.speech)
-        .and_then(|session| Execution::new(text, &session, &options.machine));
-    let mut execution = match started {
-        Ok(execution) => execution,
+        .and_then(|session| Ok((Execution::new(text, &session, &options.machine)?, session.setup)));
+    let (mut execution, setup) = match started {
+        Ok(started) => started,
         Err(mut finding) => {
             if finding.file.is_empty() {
                 finding.file.clone_from(&text.name);
@@ -177,7 +178,16 @@ fn find(text: &ProgramText, options: &Check, printer: &Printer) -> Vec<Finding> 
             return vec![finding];
         }
     };
-    execution.drain();
+    if options.alarms_only {
+        execution.drain();
+    } else {
+        let mut checks = Checks::new(execution.interpreter().position());
+        while let Some(command) = execution.next_command() {
+            checks.add(&command);
+        }
+        let checked = checks.finish(&setup);
+        checked.findings.into_iter().for_each(|warning| execution.warn(warning));
+    }
     let mut findings = execution.findings();
     if options.alarms_only {
         // What stopped the run short is told too: silence would say that the program is good.

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use turnwright_export::formats::jsonl;
 use turnwright_export::formats::svg::{PictureOptions, write_svg};
-use turnwright_verify::Inference;
+use turnwright_verify::Checks;
 
 use super::plot::paint;
 use super::trace::{BUFFER_BYTES, write_alarm, write_json};
@@ -51,11 +51,11 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         options.out.as_deref().map(|folder| OutFolder::create(folder, &session, speech)).transpose()?;
 
     let mut passes = folder.is_some().then(|| Passes::new(&execution));
-    let mut inference = Inference::new(execution.interpreter().position());
+    let mut checks = Checks::new(execution.interpreter().position());
     let mut progress = Progress::new(&text, printer);
     let decimals = execution.interpreter().decimals();
     while let Some(command) = execution.next_command() {
-        inference.add(&command);
+        checks.add(&command);
         if let Some(folder) = &mut folder {
             write_json(&mut folder.buffer, &command, decimals, &execution);
             folder.pour(BUFFER_BYTES)?;
@@ -70,7 +70,8 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     measure.warnings().for_each(|warning| execution.warn(warning));
     progress.finish();
 
-    let inferred = inference.finish(&session.setup);
+    let checked = checks.finish(&session.setup);
+    checked.findings.into_iter().for_each(|warning| execution.warn(warning));
     let findings = execution.findings();
     let status = findings.iter().map(Finding::status).max().unwrap_or(Status::Clean);
     let blocks = execution.interpreter().blocks_run();
@@ -84,7 +85,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         measure,
         passes: passes.map(Passes::finish).unwrap_or_default(),
         decimals,
-        assumptions: inferred.assumptions,
+        assumptions: checked.inferred.assumptions,
         blocks,
         stopped_at,
         written: Vec::new(),

@@ -52,7 +52,7 @@ pub(crate) fn run(options: &Trace, printer: &Printer) -> Result<Status, Fault> {
     out.write_all(&buffer)?;
     out.flush()?;
 
-    let denies = options.machine.deny.is_some();
+    let denies = !options.machine.deny.is_empty();
     let findings =
         if denies { execution.findings() } else { execution.alarm_finding().into_iter().collect() };
     for finding in &findings {

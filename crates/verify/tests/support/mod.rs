@@ -1,4 +1,5 @@
 //! Running a program text in memory, for tests.
+#![allow(dead_code, reason = "not every test uses everything")]
 
 use turnwright_canon::Command;
 use turnwright_control::{Control, Setup};
