@@ -8,6 +8,7 @@
 
 mod blank;
 mod functions;
+mod limits;
 mod messages;
 mod outline;
 mod parameter_text;
@@ -21,11 +22,12 @@ mod suggest;
 mod tooling;
 mod workholding;
 
-use policy::{AlarmIds, Limits, Policies};
+use policy::{AlarmIds, Policies};
 use serde::Deserialize;
 
 pub use blank::Stock;
 pub use functions::{CodeSystem, FunctionEntry, Functions, Group, parse_code};
+pub use limits::Limits;
 pub use messages::{Language, MessageText, Messages, RaisedBy};
 pub use outline::{ArcTurn, OutlinePoint};
 pub use parameter_text::{

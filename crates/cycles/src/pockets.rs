@@ -10,7 +10,7 @@
 //!
 //! Decisions where the documents are silent: a first element at rapid, or one straight down, is the approach through
 //! the open; one that is cut and slants belongs to the contour, and then nothing is open. A level that only touches
-//! a bottom is left to the contour pass. Humps above the start point are passed over in the air.
+//! a bottom is left to the contour pass, and cut where there is none. Humps above the start point are passed over in the air.
 //!
 //! Not here: figures without pockets by the rules of type I, nose radius compensation, the finishing pass.
 //! Source: type II of rough turning and facing, chapter 4 of the cycles, and rows 8, 9, 29, 32 and 33 of its
@@ -218,6 +218,12 @@ impl PocketRoughing {
         }
     }
 
+    /// A corner of a pocket deeper than this is worth a pass at `level`. Where no pass along the figure follows, a bottom
+    /// that the level touches is cut too: nothing else would.
+    const fn bottom(&self, level: i64) -> i64 {
+        if self.request.rough.semi_finish { level + self.touch() } else { self.edge(level) }
+    }
+
     /// Plans until there is a move, or nothing more to plan.
     fn plan(&mut self) {
         while self.planned.is_empty() {
@@ -265,7 +271,11 @@ impl PocketRoughing {
     /// The next stretch of `region` that is deeper than its level somewhere.
     fn stretch(&self, region: &Region) -> Option<Stretch> {
         let level = self.level(region.level);
-        let deep = self.heights.next_deeper(region.from, level + self.touch())?;
+        let mut deep = self.heights.next_deeper(region.from, self.bottom(level))?;
+        if self.heights.last_up_to(deep, self.edge(level)).is_none() {
+            // Open to the start it is no pocket: the rule of figures without pockets holds.
+            deep = self.heights.next_deeper(region.from, level + self.touch())?;
+        }
         if deep > region.to {
             return None;
         }

@@ -143,3 +143,28 @@ impl Segment {
         turned.from(bend.centre)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_end_where_the_element_does() {
+        let line = Segment { start: Point::new(0.0, 0.0), end: Point::new(0.0, 4.0), bend: None };
+        for (x, z, distance) in [(3.0, 2.0, 3.0), (-1.0, 0.0, 1.0), (3.0, 8.0, 5.0), (0.0, -2.0, 2.0)] {
+            assert!((line.distance(Point::new(x, z)) - distance).abs() < 1e-12, "{x} {z}");
+        }
+        // A quarter about the origin, from +Z counter-clockwise to +X.
+        let bend = Some(Bend { centre: Point::new(0.0, 0.0), clockwise: false });
+        let arc = Segment { start: Point::new(0.0, 2.0), end: Point::new(2.0, 0.0), bend };
+        for (x, z, distance) in
+            [(3.0, 3.0, 18.0_f64.sqrt() - 2.0), (0.0, -1.0, 5.0_f64.sqrt()), (0.0, 5.0, 3.0)]
+        {
+            assert!((arc.distance(Point::new(x, z)) - distance).abs() < 1e-12, "{x} {z}");
+        }
+        let middle = arc.at(0.5);
+        assert!((middle.x - 2.0_f64.sqrt()).abs() < 1e-12 && (middle.z - middle.x).abs() < 1e-12);
+        let nothing = Segment { end: line.start, ..line };
+        assert_eq!(nothing.distance(Point::new(3.0, 4.0)), 5.0);
+    }
+}

@@ -3,7 +3,7 @@
 //! In: the sequence numbers P and Q of a cycle block. Out: a [`Figure`] and where execution goes on. Source:
 //! the rules for the blocks from P to Q of the repetitive cycles.
 
-use turnwright_control::policy::{AfterRoughing, DuplicateSequence, FirstFigureCode};
+use turnwright_control::policy::{AfterRoughing, DuplicateSequence, FinishingFigure, FirstFigureCode};
 use turnwright_cycles::Figure;
 use turnwright_diagnostics::{Diagnostic, Place};
 use turnwright_syntax::{Block, Word, scan_block};
@@ -27,6 +27,15 @@ pub(crate) struct FigureRange {
     pub(crate) last_place: Place,
 }
 
+/// A figure that was roughed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Roughed {
+    pub(crate) first: u32,
+    pub(crate) last: u32,
+    /// Its first block.
+    begin: Resume,
+}
+
 /// A figure that was read.
 #[derive(Debug)]
 pub(crate) struct Captured {
@@ -36,11 +45,18 @@ pub(crate) struct Captured {
     pub(crate) first_has_x: bool,
     pub(crate) first_has_z: bool,
     pub(crate) first_place: Place,
+    /// Its first block.
+    begin: Resume,
     /// Where execution goes on.
     pub(crate) behind: Resume,
 }
 
 impl Captured {
+    /// What is remembered of it.
+    pub(crate) const fn roughed(&self) -> Roughed {
+        Roughed { first: self.range.first, last: self.range.last, begin: self.begin }
+    }
+
     /// Lines of the elements, for the origins of moves.
     pub(crate) fn lines(&self) -> Vec<u32> {
         self.figure.elements.iter().map(|element| element.line).collect()
@@ -120,6 +136,20 @@ impl Core {
             return Err(self.finish(diagnostic.near(self.block_place(), "figure-range-names-cycle")));
         }
         Ok((first, last))
+    }
+
+    /// The first block of the figure that the finishing cycle runs.
+    pub(crate) fn figure_to_finish(
+        &mut self,
+        range: &FigureRange,
+        call: &mut Call<'_>,
+    ) -> Result<Resume, Alarm> {
+        let (found, _) = self.find_range(range, call)?;
+        if self.control.policies.finishing_figure == FinishingFigure::Searched {
+            return Ok(found);
+        }
+        let is_same = |one: &&Roughed| (one.first, one.last) == (range.first, range.last);
+        Ok(self.roughed.iter().rev().find(is_same).map_or(found, |one| one.begin))
     }
 
     fn report_duplicate(&mut self, number: u32, place: Place) -> Result<(), Alarm> {
@@ -217,6 +247,7 @@ impl Core {
             first_has_x: first_letters & CROSS != 0,
             first_has_z: first_letters & ALONG != 0,
             first_place,
+            begin: first,
             behind,
         })
     }

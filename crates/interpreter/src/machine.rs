@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use turnwright_canon::{Command, CycleOrigin, OtherAxes, PathMode};
 use turnwright_control::{Control, Mode, Parameters, Setup, SetupFault};
 use turnwright_cycles::Element;
-use turnwright_diagnostics::{Diagnostic, SourceId};
+use turnwright_diagnostics::{Diagnostic, Place, SourceId};
 use turnwright_syntax::Block;
 use turnwright_units::{Angle, Displacement, Length, Position, Radius, SurfaceSpeed, WorkTip};
 
@@ -16,7 +16,7 @@ use crate::cache::Cache;
 use crate::compensation::Compensation;
 use crate::corner::OpenPath;
 use crate::data_list::{DataList, ToolLife};
-use crate::figure::FigureRange;
+use crate::figure::{FigureRange, Roughed};
 use crate::flow::{Frame, Resume};
 use crate::functions::reference_return::Homing;
 use crate::functions::{Dispatch, FunctionId};
@@ -80,6 +80,8 @@ pub struct GivenParameter {
     pub parameter: &'static str,
     /// The word.
     pub word: String,
+    /// Where it stands.
+    pub place: Place,
     /// Number of the text that holds it, and its line there.
     pub source: SourceId,
     /// The line, from 1.
@@ -182,8 +184,8 @@ pub(crate) struct Core {
     pub(crate) given: Vec<GivenParameter>,
     /// Crest of the thread in many passes that began last, at its start.
     pub(crate) thread_crest: Option<Radius>,
-    /// First and last sequence numbers of figures that were roughed.
-    pub(crate) roughed: Vec<(u32, u32)>,
+    /// Figures that were roughed.
+    pub(crate) roughed: Vec<Roughed>,
     /// Lines of figures that were finished before anything roughed them.
     pub(crate) finished_first: Vec<u32>,
     /// Bit 0: the block before was a thread; bit 1: the block in work is one.

@@ -5,8 +5,9 @@ mod support;
 use support::{Conditions, Run, run_on};
 use turnwright_control::Control;
 use turnwright_control::policy::{
-    CycleForm, FeedPerRevolution, MissingPoint, NestedComment, OneShotWithMotion, PeckModeWord, Policies,
-    RepeatedAddress, RunOutLengthAlone, SpeedLimitAtReset, StoppingCodes,
+    CycleForm, FeedPerRevolution, FinishingFigure, GrooveWithoutPeck, MissingPoint, NestedComment,
+    OneShotWithMotion, PeckModeWord, Policies, RepeatedAddress, RunOutLengthAlone, SingleCycleSide,
+    SpeedLimitAtReset, StoppingCodes,
 };
 
 fn run_with(text: &str, restarts: u32, change: impl FnOnce(&mut Policies)) -> Run {
@@ -132,6 +133,57 @@ fn a_run_out_may_be_as_deep_as_long() {
         run(RunOutLengthAlone::AsDeepAsLong).contains("thread d20 z-18 lead2  G92 thread 1\nthread d24 z-20")
     );
     assert!(run(RunOutLengthAlone::NoRunOut).contains("thread d20 z-20 lead2  G92 thread 1\nrapid d25 z-20"));
+}
+
+#[test]
+fn a_groove_without_its_peck_may_plunge_in_one_go() {
+    let text = "G0 X50. Z-5. M3 S500\nG75 X20. F0.1\nM30\n";
+    let run = run_with(text, 0, |policies| policies.groove_without_peck = GrooveWithoutPeck::OnePlunge);
+    assert_eq!(run.diagnostics(), "warning T069 groove-step-omitted 2:1-14\n");
+    assert!(run.listing().contains("feed d20 z-5 f0.1/rev  G75 peck 1\n"), "{}", run.listing());
+}
+
+#[test]
+fn the_finishing_cycle_may_take_the_figure_that_was_roughed() {
+    // Two figures with the same numbers: the second one is roughed, then finished.
+    let text = "G98 F100. M03 S500\nN10 G00 X20.\nN20 G01 Z-5.\nG00 X50. Z2.\nG71 U5. R1.\nG71 P10 Q20\n\
+                N10 G00 X30.\nN20 G01 Z-9.\nG70 P10 Q20\nM30\n";
+    let finished = |policy| {
+        let run = run_with(text, 0, |policies| policies.finishing_figure = policy);
+        assert!(run.alarm.is_none(), "{}", run.diagnostics());
+        let finish = run.listing();
+        finish.lines().find(|line| line.contains("G70 finish")).unwrap_or_default().to_string()
+    };
+    assert!(finished(FinishingFigure::Remembered).starts_with("rapid d30"));
+    assert!(finished(FinishingFigure::Searched).starts_with("rapid d20"));
+}
+
+#[test]
+fn compensation_may_shift_a_turning_cycle_by_its_code() {
+    let setup = "[offsets.1]\ngeometry = { r = 1 }\n";
+    let text = |code: &str| {
+        format!("G98 F100. T0101\nG00 X60. Z2.\n{code} G90 X40. Z-20. R-5.\nG40 G00 X80.\nM30\n")
+    };
+    let run = |code: &str, policy| {
+        let mut control = Control::load("fanuc-0i-tf").expect("a control");
+        control.policies.single_cycle_side = policy;
+        let conditions = Conditions { setup: setup.to_string(), ..Conditions::on("fanuc-0i-tf") };
+        run_on(control, text(code).as_bytes(), &conditions).listing()
+    };
+    let (left, right) = ("G41", "G42");
+    assert_eq!(run(left, SingleCycleSide::Start), run(right, SingleCycleSide::Start));
+    assert_eq!(run(right, SingleCycleSide::Code), run(right, SingleCycleSide::Start), "outside it is G42");
+    // With G41 the nose is on the other side of the cone, twice as far away as the slant makes its radius.
+    let end = |listing: String| {
+        let cut = listing.lines().find(|line| line.contains("G90 cut")).unwrap_or_default().to_string();
+        cut.split(['d', ' ']).find_map(|word| word.parse::<f64>().ok()).expect("X")
+    };
+    let (start, code) = (end(run(left, SingleCycleSide::Start)), end(run(left, SingleCycleSide::Code)));
+    let slanted = 2.0 * (5.0_f64.hypot(22.0) / 22.0);
+    assert!(
+        (start - 40.0 - slanted).abs() < 0.002 && (40.0 - code - slanted).abs() < 0.002,
+        "{start} {code}"
+    );
 }
 
 #[test]

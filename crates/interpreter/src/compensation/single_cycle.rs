@@ -2,13 +2,13 @@
 //!
 //! A thread keeps the vector that it finds, through all moves of its cycle, and no joints are made. Of the others each of their four moves is shifted by a fixed vector. Those along the axes are cut right by the imaginary tip as
 //! they are; the taper is shifted so far along the axis of the infeed that the nose touches it from the side of the start
-//! point. The ways between them stay where they were, and no joints are inserted.
+//! point, or by policy from that of G41 or G42. The ways between them stay where they were, and no joints are inserted.
 //!
 //! A tip that points away from the work would overcut it: an alarm by policy.
 //!
 //! Source: tool nose radius compensation with single cycles.
 
-use turnwright_control::policy::SingleCycleOvercut;
+use turnwright_control::policy::{SingleCycleOvercut, SingleCycleSide};
 use turnwright_cycles::FirstAxis;
 use turnwright_geometry::{Offset, Segment, Side};
 use turnwright_units::{Length, Position, Radius, WorkTip};
@@ -71,10 +71,16 @@ impl Core {
         let cut = cut(start, first, end, taper);
         let along_first = |x: f64, z: f64| if first == FirstAxis::X { x } else { z };
         let to_start = along_first((start.x - end.x).to_mm(), (start.z - end.z).to_mm());
-        let square = [Side::Left, Side::Right]
-            .map(|side| Offset { side, radius_mm: 1.0 }.at_start(&cut))
-            .into_iter()
-            .find(|square| along_first(square.x, square.z) * to_start > NOTHING);
+        let beside = |side| Offset { side, radius_mm: 1.0 }.at_start(&cut);
+        let by_code = self.control.policies.single_cycle_side == SingleCycleSide::Code;
+        let asked = self.compensation.as_ref().and_then(|path| path.side).filter(|_| by_code);
+        let square = match asked {
+            Some(side) => Some(beside(side)).filter(|square| along_first(square.x, square.z).abs() > NOTHING),
+            None => [Side::Left, Side::Right]
+                .map(beside)
+                .into_iter()
+                .find(|square| along_first(square.x, square.z) * to_start > NOTHING),
+        };
         let Some(square) = square else { return Ok(end) };
         let tip = element::to_tip(nose);
         let tip_ahead = square.x * tip.x + square.z * tip.z;

@@ -4,6 +4,8 @@
 //! Then both axes go back to the start point at rapid, each at its own rate, and the program goes on behind the
 //! cycle block.
 //!
+//! Of several figures with these numbers it takes by policy the first one that a search finds, or the one that was roughed.
+//!
 //! P and Q that are not those of a roughing cycle before are legal and the commonest typing error: a warning.
 //!
 //! Source: finishing cycle of both families.
@@ -12,6 +14,7 @@ use turnwright_diagnostics::Diagnostic;
 
 use super::Function;
 use crate::block::Call;
+use crate::figure::Roughed;
 use crate::machine::Core;
 use crate::report::Alarm;
 
@@ -23,7 +26,7 @@ fn finishing(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     core.refuse_in_mdi("cycle-not-in-memory", call.word)?;
     let range = core.range_words(call)?;
     core.compare_with_roughing(&range);
-    let (first, _) = core.find_range(&range, call)?;
+    let first = core.figure_to_finish(&range, call)?;
     core.remember_finished(first.line.line);
     core.start_finish(first, range, call.code, call.environment)
 }
@@ -46,17 +49,19 @@ impl Core {
     }
 
     fn compare_with_roughing(&mut self, range: &crate::figure::FigureRange) {
-        if self.roughed.is_empty() || self.roughed.contains(&(range.first, range.last)) {
+        if self.roughed.is_empty()
+            || self.roughed.iter().any(|one| (one.first, one.last) == (range.first, range.last))
+        {
             return;
         }
         // The word that differs from a roughing cycle's, when only one does.
-        let same_first = self.roughed.iter().rev().find(|(first, _)| *first == range.first);
-        let same_last = self.roughed.iter().rev().find(|(_, last)| *last == range.last);
+        let same_first = self.roughed.iter().rev().find(|one| one.first == range.first);
+        let same_last = self.roughed.iter().rev().find(|one| one.last == range.last);
         let (place, word, expected) = match (same_first, same_last) {
-            (Some((_, last)), _) => (range.last_place, format!("Q{}", range.last), format!("Q{last}")),
-            (None, Some((first, _))) => (range.first_place, format!("P{}", range.first), format!("P{first}")),
+            (Some(one), _) => (range.last_place, format!("Q{}", range.last), format!("Q{}", one.last)),
+            (None, Some(one)) => (range.first_place, format!("P{}", range.first), format!("P{}", one.first)),
             (None, None) => {
-                let (first, last) = self.roughed[self.roughed.len() - 1];
+                let Roughed { first, last, .. } = self.roughed[self.roughed.len() - 1];
                 (range.first_place, format!("P{} Q{}", range.first, range.last), format!("P{first} Q{last}"))
             }
         };

@@ -6,11 +6,14 @@
 //! a radius or a diameter by the control, and so is the relief Δd at the bottom of the face cycle. In one block
 //! (`one_block.rs`) I is the distance along X, K that along Z, D the relief.
 //!
-//! Without X and P the face cycle is a drilling cycle.
+//! Without X and P the face cycle is a drilling cycle. An end point without the peck is refused, cut in one go, or by
+//! policy no block that cuts.
 //!
 //! Source: face and radial peck cycles of both families.
 
-use turnwright_control::policy::{GrooveReliefAlone, GrooveReliefSign, GrooveWords as GrooveWordsAre};
+use turnwright_control::policy::{
+    GrooveReliefAlone, GrooveReliefSign, GrooveWithoutPeck, GrooveWords as GrooveWordsAre,
+};
 use turnwright_cycles as cycles;
 use turnwright_syntax::Word;
 use turnwright_units::{Length, Position};
@@ -36,9 +39,16 @@ fn groove(core: &mut Core, call: &mut Call<'_>, peck_axis: cycles::PeckAxis) -> 
     core.refuse_comma_words(call.block)?;
     if call.block.present() & super::AXES != 0 {
         let form = core.cycle_form(call.block, b"DIK")?;
-        return core.run_groove(call, peck_axis, form);
+        let peck = if peck_axis == cycles::PeckAxis::X { b'P' } else { b'Q' };
+        let stores = core.control.policies.groove_without_peck == GrooveWithoutPeck::StoresData;
+        if !stores || form != Form::TwoBlocks || call.block.has(peck) {
+            return core.run_groove(call, peck_axis, form);
+        }
+        core.refuse_letters(call.block, b"DIK")?;
+        core.warn_block("groove-cuts-nothing");
+    } else {
+        core.refuse_letters(call.block, b"PQDIK")?;
     }
-    core.refuse_letters(call.block, b"PQDIK")?;
     if let Some(word) = call.block.word(b'R') {
         core.settings.groove_return = core.unsigned_length(word)?;
         core.missing_point(word);
@@ -106,7 +116,8 @@ impl Core {
             return Err(self.alarm_at("groove-end-missing", call.word));
         }
         if peck.is_none_or(Length::is_zero) {
-            if form != Form::OneBlockRecognised {
+            let plunges = self.control.policies.groove_without_peck == GrooveWithoutPeck::OnePlunge;
+            if form != Form::OneBlockRecognised && !(plunges && peck.is_none()) {
                 return Err(self.alarm_at("groove-step-zero", call.word));
             }
             self.warn_block("groove-step-omitted");

@@ -17,6 +17,7 @@ use turnwright_control::policy::{
     PocketSemiFinish,
 };
 use turnwright_cycles as cycles;
+use turnwright_diagnostics::Diagnostic;
 use turnwright_syntax::{Block, Word};
 use turnwright_units::{Length, Radius};
 
@@ -69,6 +70,7 @@ impl Core {
         let given = GivenParameter {
             parameter,
             word: self.quote(word.start, word.end),
+            place: self.place(word),
             source: self.at.source,
             line: self.at.line,
         };
@@ -240,12 +242,22 @@ impl Core {
         if self.roughed.len() == REMEMBERED {
             self.roughed.remove(0);
         }
-        self.roughed.push((captured.range.first, captured.range.last));
+        self.roughed.push(captured.roughed());
     }
 
     /// The alarm of the control for what a cycle refused.
     pub(super) fn misuse(&self, fault: cycles::Misuse, call: &Call<'_>) -> Alarm {
         use cycles::Misuse;
+        // Of a value that the block that stores has given, the word there is meant.
+        let stored = match fault {
+            Misuse::MinDepthNegative | Misuse::MinDepthAboveHeight => "thread-minimum-depth",
+            Misuse::AllowanceNegative | Misuse::AllowanceNotBelowHeight => "thread-finishing-allowance",
+            Misuse::NoseAngle if !call.block.has(b'A') => "thread-nose-angle",
+            Misuse::RetractNegative => "groove-return",
+            Misuse::EscapeNegative => "cycle-escape",
+            _ => "",
+        };
+        let given = self.given.iter().find(|given| given.parameter == stored);
         let letter = |letter: u8| call.block.word(letter).or(call.word);
         let (key, word) = match fault {
             Misuse::OutOfRange => ("number-too-long", call.word),
@@ -274,6 +286,12 @@ impl Core {
             Misuse::ThreadTooShort => ("thread-length-illegal", letter(b'Z')),
             Misuse::RunOutNegative | Misuse::RunOutAngle => ("run-out-illegal", call.word),
         };
-        self.alarm_at(key, word)
+        match given {
+            Some(given) => {
+                let near = call.word.map_or_else(|| self.block_place(), |word| self.place(word));
+                self.finish(Diagnostic::alarm(key).at(given.place).near(near, "cycle-that-runs"))
+            }
+            None => self.alarm_at(key, word),
+        }
     }
 }
