@@ -260,11 +260,17 @@ impl Row {
 
     /// Adds a run behind all others; it begins no earlier than they end.
     pub(crate) fn append(&mut self, run: &mut Run) {
-        while run.len() > 0 {
-            let mut rest = Run::default();
-            run.part(run.len().min(CHUNK_SLABS_MAX / 2), &mut rest);
-            self.chunks.push(Chunk::new(std::mem::replace(run, rest)));
+        let mut part = Run::default();
+        for (slab, bands) in run.slabs() {
+            part.copy(slab, bands);
+            if part.len() == CHUNK_SLABS_MAX / 2 {
+                self.chunks.push(Chunk::new(std::mem::take(&mut part)));
+            }
         }
+        if part.len() > 0 {
+            self.chunks.push(Chunk::new(part));
+        }
+        run.clear();
     }
 
     /// What a knife would take, without taking it; `left` is memory for what would be left.
@@ -286,7 +292,8 @@ impl Row {
         knife.removed
     }
 
-    /// Puts in the place of each slab what a knife leaves of it; `left` is memory for that.
+    /// Puts in the place of each slab what a knife leaves of it; `left` is memory for that. Where what is left is not
+    /// seen to hang together, the knife is told.
     pub(crate) fn carve(&mut self, knife: &mut Knife<'_>, left: &mut Left) {
         let (from, to) = (knife.from, knife.to);
         let mut index = self.chunks.partition_point(|chunk| chunk.to <= from + WELD_MM);
