@@ -1,4 +1,4 @@
-//! **A feed that no turning tool is meant for.** More than 1.5 mm or less than 0.005 mm per revolution in a cutting
+//! **A feed that no turning tool is meant for.** More than 1.2 mm or less than 0.005 mm per revolution in a cutting
 //! move. (Above 10 mm the interpreter says so at the word already.)
 //!
 //! Why it hurts: a number for the other feed mode, or a lost point, breaks the insert in the first revolution or lets
@@ -14,7 +14,7 @@ use turnwright_units::{Feed, Length};
 use super::{Check, Report, State};
 
 /// More is no feed of a turning tool.
-const FEED_MAX: Length = Length::from_nm(1_500_000);
+const FEED_MAX: Length = Length::from_nm(1_200_000);
 
 /// From here on the word itself is warned of.
 const WORD_MAX: Length = Length::from_mm(10);

@@ -4,6 +4,7 @@
 //! warns of what one block shows by itself; a check follows the program, or needs the setup.
 
 mod chuck_speed;
+mod cycle_leads_away;
 mod drill_direction;
 mod feed_mode;
 mod feed_size;
@@ -147,6 +148,7 @@ impl Checks {
         };
         let checks: Vec<Box<dyn Check>> = vec![
             Box::<chuck_speed::ChuckSpeed>::default(),
+            Box::<cycle_leads_away::CycleLeadsAway>::default(),
             Box::<drill_direction::DrillDirection>::default(),
             Box::<feed_mode::FeedMode>::default(),
             Box::<feed_size::FeedSize>::default(),

@@ -3,9 +3,10 @@
 
 use turnwright_canon::Command;
 use turnwright_control::{Control, Setup};
-use turnwright_diagnostics::{Diagnostic, SourceId};
+use turnwright_diagnostics::{Diagnostic, Severity, SourceId};
 use turnwright_interpreter::{Environment, Interpreter, Options, ReadFault, Step};
 use turnwright_units::{Position, WorkTip};
+use turnwright_verify::Checks;
 
 struct Memory<'a>(&'a [u8]);
 
@@ -27,6 +28,16 @@ pub struct Run {
     pub start: Position<WorkTip>,
     pub commands: Vec<Command>,
     pub alarm: Option<Diagnostic>,
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Everything that `check` tells of a run: keys of the alarm, of warnings and of checks. Notes are no faults.
+pub fn checked_keys(run: &Run, setup: &Setup) -> Vec<&'static str> {
+    let mut checks = Checks::new(run.start);
+    run.commands.iter().for_each(|command| checks.add(command));
+    let found = checks.finish(setup).findings;
+    let told = run.warnings.iter().chain(&run.alarm).chain(&found);
+    told.filter(|diagnostic| diagnostic.severity > Severity::Note).map(|diagnostic| diagnostic.key).collect()
 }
 
 /// Runs a program on a control with a setup.
@@ -38,16 +49,19 @@ pub fn run(text: &str, control: &str, setup: &Setup) -> Run {
     let options = Options { blocks_max: 100_000, idle_blocks_max: 100_000 };
     let mut interpreter =
         Interpreter::new(control, setup, SourceId(0), options).unwrap_or_else(|fault| panic!("{fault:?}"));
-    let mut run = Run { start: interpreter.position(), commands: Vec::new(), alarm: None };
+    let mut run =
+        Run { start: interpreter.position(), commands: Vec::new(), alarm: None, warnings: Vec::new() };
     loop {
         match interpreter.step(&mut Memory(text.as_bytes())) {
             Step::Emit(command) => run.commands.push(command),
             Step::NeedSync(_) => {}
             Step::Alarm(alarm) => {
                 run.alarm = Some(*alarm);
-                return run;
+                break;
             }
-            Step::End => return run,
+            Step::End => break,
         }
     }
+    run.warnings = interpreter.take_warnings();
+    run
 }
