@@ -113,7 +113,9 @@ pub struct Checks {
     inference: Inference,
     state: State,
     report: Report,
-    checks: Vec<Box<dyn Check>>,
+    /// Those that look at moves; a program has many.
+    of_moves: Vec<Box<dyn Check>>,
+    of_others: Vec<Box<dyn Check>>,
 }
 
 impl std::fmt::Debug for Checks {
@@ -146,23 +148,25 @@ impl Checks {
             rpm_max: None,
             has_cut: false,
         };
-        let checks: Vec<Box<dyn Check>> = vec![
-            Box::<chuck_speed::ChuckSpeed>::default(),
+        let of_moves: Vec<Box<dyn Check>> = vec![
             Box::<cycle_leads_away::CycleLeadsAway>::default(),
             Box::<drill_direction::DrillDirection>::default(),
             Box::<feed_mode::FeedMode>::default(),
             Box::<feed_size::FeedSize>::default(),
             Box::<groove_step::GrooveStep>::default(),
+            Box::<stop_in_cut::StopInCut>::default(),
+            Box::<thread_speed::ThreadSpeed>::default(),
+            Box::<without_offset::WithoutOffset>::default(),
+        ];
+        let of_others: Vec<Box<dyn Check>> = vec![
+            Box::<chuck_speed::ChuckSpeed>::default(),
             Box::<offset_cancel::OffsetCancel>::default(),
             Box::new(offset_number::OffsetNumber),
             Box::new(overhang::Overhang),
-            Box::<stop_in_cut::StopInCut>::default(),
-            Box::<thread_speed::ThreadSpeed>::default(),
             Box::<tool_change::ToolChange>::default(),
-            Box::<without_offset::WithoutOffset>::default(),
         ];
         let report = Report::default();
-        Self { inference: Inference::new(start), state, report, checks }
+        Self { inference: Inference::new(start), state, report, of_moves, of_others }
     }
 
     /// Looks at a command.
@@ -171,7 +175,7 @@ impl Checks {
         self.inference.add(command);
         match &command.action {
             Action::Rapid { to, .. } | Action::Feed { to, .. } | Action::Thread { to, .. } => {
-                for check in &mut self.checks {
+                for check in &mut self.of_moves {
                     check.on_move(command, &self.state, &mut self.report);
                 }
                 self.state.at = *to;
@@ -183,7 +187,7 @@ impl Checks {
 
     #[cold]
     fn other(&mut self, command: &Command) {
-        for check in &mut self.checks {
+        for check in self.of_moves.iter_mut().chain(&mut self.of_others) {
             check.on_other(command, &self.state, &mut self.report);
         }
         match &command.action {
@@ -209,7 +213,7 @@ impl Checks {
             tools: inferred.setup.tools().unwrap_or_default(),
             stock: inferred.setup.stock_outline().ok().flatten().map(|stock| stock.bounds()),
         };
-        for check in &mut self.checks {
+        for check in self.of_moves.iter_mut().chain(&mut self.of_others) {
             check.at_end(&scene, &mut self.report);
         }
         drop(scene);
