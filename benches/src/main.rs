@@ -5,11 +5,13 @@
 //! S1 memory, S2 growth, S3 jumps). `rs274` is run
 //! as a separate program when it is installed; without it only our own figures are printed.
 //! `removal` takes material away beside a polyline library (R1, R3, R4).
+//! `motion [TICKS]` plans paths and plays programs beside `rsruckig` (T1 to T5).
 //! `cycles` runs P7 and a figure of 100 pockets alone; `generate DIR [BLOCKS]`, `lex FILE`, `tree FILE`, `interpret FILE`, `listing FILE` do single steps.
 
 mod compare;
 mod cycles;
 mod generate;
+mod motion;
 mod removal;
 
 use std::fs::File;
@@ -41,10 +43,12 @@ fn main() -> ExitCode {
         ["listing", file] => listing(Path::new(file)),
         ["cycles"] => compare::cycles(3),
         ["removal"] => removal::run(1_000, 10).and_then(|()| removal::growth(10_000, 10)),
+        ["motion"] => motion::run(10_000_000),
+        ["motion", ticks] => motion::run(ticks.parse().unwrap_or(10_000_000)),
         ["compare"] => compare::run(1_000_000, 5),
         ["compare", blocks] => compare::run(blocks.parse().unwrap_or(1_000_000), 5),
         _ => {
-            Err("usage: compare [BLOCKS] | cycles | removal | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE"
+            Err("usage: compare [BLOCKS] | cycles | removal | motion [TICKS] | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE"
                 .to_string())
         }
     };

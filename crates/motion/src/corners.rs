@@ -85,31 +85,29 @@ impl Corners {
     /// Lets the corner just met slow down those that are passed together with it.
     fn look_back(&mut self, dynamics: &Dynamics) {
         let (mut turn, mut bend) = ([0.0; AXIS_COUNT], [0.0; AXIS_COUNT]);
-        let newest = self.end_mm;
-        for index in (0..self.waiting.len()).rev() {
-            let stretch = self.waiting[index];
-            if stretch.has_corner {
-                for axis in 0..AXIS_COUNT {
-                    turn[axis] += stretch.turn[axis];
-                    bend[axis] += stretch.bend[axis];
-                }
-                let apart = (newest - stretch.end_mm) / (2.0 * dynamics.corner_s);
-                let together = dynamics.corner_speed(&turn, &bend);
-                self.slow_down_from(index, together.max(apart));
-                if apart >= together {
-                    return;
-                }
+        let mut speeds = [f64::INFINITY; WAITING_MAX];
+        let mut oldest = self.waiting.len();
+        for (index, stretch) in
+            self.waiting.iter().enumerate().rev().filter(|(_, stretch)| stretch.has_corner)
+        {
+            for axis in 0..AXIS_COUNT {
+                turn[axis] += stretch.turn[axis];
+                bend[axis] += stretch.bend[axis];
+            }
+            // So fast the corners from here on are passed within one time, or so slowly that they are not.
+            let apart = (self.end_mm - stretch.end_mm) / (2.0 * dynamics.corner_s);
+            let together = dynamics.corner_speed(&turn, &bend);
+            (oldest, speeds[index]) = (index, together.max(apart));
+            if apart >= together {
+                break;
             }
         }
-    }
-
-    /// The corner of a stretch and all behind it are no faster.
-    fn slow_down_from(&mut self, index: usize, speed: f64) {
-        self.waiting[index].corner_mm_per_s = self.waiting[index].corner_mm_per_s.min(speed);
-        for stretch in self.waiting.range_mut(index + 1..) {
-            stretch.limit_mm_per_s = stretch.limit_mm_per_s.min(speed);
+        let mut slowest = f64::INFINITY;
+        for (stretch, speed) in self.waiting.iter_mut().zip(speeds).skip(oldest) {
+            stretch.limit_mm_per_s = stretch.limit_mm_per_s.min(slowest);
+            slowest = slowest.min(speed);
             if stretch.has_corner {
-                stretch.corner_mm_per_s = stretch.corner_mm_per_s.min(speed);
+                stretch.corner_mm_per_s = stretch.corner_mm_per_s.min(slowest);
             }
         }
     }

@@ -146,13 +146,13 @@ impl Dynamics {
         let time = self.corner_s;
         let mut speed = f64::INFINITY;
         for ((axis, turn), bend) in self.axes.iter().zip(turn).zip(bend) {
-            let turn = turn.abs();
-            if turn > TURN_NONE {
-                speed = speed.min(CORNER * axis.acceleration_per_s2 * time / turn);
+            let jerk = JERK_CORNER * axis.jerk_per_s3;
+            if *turn > TURN_NONE {
+                let step = (CORNER * axis.acceleration_per_s2).min(jerk * time) * time;
+                speed = speed.min(step / turn);
             }
-            if turn > TURN_NONE || *bend > 0.0 {
+            if *bend > 0.0 {
                 // v²·bend/T + v·turn/T² = jerk
-                let jerk = JERK_CORNER * axis.jerk_per_s3;
                 let (square, linear) = (bend / time, turn / (time * time));
                 speed = speed.min(2.0 * jerk / (linear + (linear * linear + 4.0 * square * jerk).sqrt()));
             }

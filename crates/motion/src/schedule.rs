@@ -11,6 +11,7 @@ use turnwright_canon::{Action, Command, PathMode};
 use turnwright_units::{Position, WorkTip};
 
 use crate::clock::{Clock, Timing};
+use crate::leg::Leg;
 use crate::orders::leg_limit;
 use crate::run::{CuttingRun, LEGS_MAX};
 use crate::{Dynamics, ESTIMATES, ESTIMATES_WITH_DYNAMICS, MachineRates};
@@ -40,6 +41,8 @@ pub struct Schedule {
 struct Planning {
     dynamics: Dynamics,
     run: CuttingRun,
+    /// The legs of the command that is being taken up.
+    legs: Vec<Leg>,
     entries: VecDeque<Entry>,
     /// When the last leg that is over was.
     passed_s: f64,
@@ -54,6 +57,7 @@ impl Schedule {
             Box::new(Planning {
                 dynamics,
                 run: CuttingRun::new(dynamics),
+                legs: Vec::new(),
                 entries: VecDeque::new(),
                 passed_s: 0.0,
                 mode: PathMode::Continuous,
@@ -116,8 +120,7 @@ impl Schedule {
 
 impl Planning {
     fn add(&mut self, command: Command, clock: &mut Clock, known: &mut VecDeque<(Command, Timing)>) {
-        let order = clock.cut_order(&command.action);
-        let Some(order) = order else {
+        let Some(cut) = clock.cut_order(&command.action) else {
             let timing = clock.advance(&command);
             if self.run.is_open() {
                 self.entries.push_back(Entry { command, timing, legs: 0, is_complete: true });
@@ -126,27 +129,24 @@ impl Planning {
             }
             return;
         };
-        let before = clock.turning_spindle();
-        let mut after = clock.clone();
-        let timing = after.advance(&command);
+        let (order, has_others) = (cut.order, cut.has_others);
+        self.legs.clear();
+        self.legs.extend(cut.legs().filter(|leg| leg.length_mm > 0.0));
+        let mut spindle = clock.turning_spindle();
+        let wanted_rpm = clock.spindle_order().rpm_at(clock.position().x.to_mm());
+        let timing = clock.advance(&command);
         if !self.run.is_open() {
-            self.has_others = order.has_others;
-            let limits = self.dynamics.cutting(self.has_others);
-            let mut spindle = before;
-            if timing.waited_s > 0.0 || before.ramp_rpm_per_s == 0.0 {
-                spindle.rpm = clock.spindle_order().rpm_at(clock.position().x.to_mm());
+            self.has_others = has_others;
+            if timing.waited_s > 0.0 || spindle.ramp_rpm_per_s == 0.0 {
+                spindle.rpm = wanted_rpm;
             }
-            self.run.begin(limits, spindle);
+            self.run.begin(self.dynamics.cutting(has_others), spindle);
             self.passed_s = 0.0;
         }
         let waiting = Timing { seconds: timing.waited_s, ..timing };
-        self.entries.push_back(Entry {
-            timing: waiting,
-            command: command.clone(),
-            legs: 0,
-            is_complete: false,
-        });
-        for leg in order.legs().filter(|leg| leg.length_mm > 0.0) {
+        self.entries.push_back(Entry { timing: waiting, command, legs: 0, is_complete: false });
+        for index in 0..self.legs.len() {
+            let leg = self.legs[index];
             while !self.run.has_room() {
                 self.run.plan();
                 self.take(known);
@@ -155,12 +155,11 @@ impl Planning {
             if let Some(entry) = self.entries.back_mut() {
                 entry.legs += 1;
             }
-            self.run.push(leg, order.order, limit);
+            self.run.push(leg, order, limit);
         }
         if let Some(entry) = self.entries.back_mut() {
             entry.is_complete = true;
         }
-        *clock = after;
     }
 
     /// Takes the times that are known.

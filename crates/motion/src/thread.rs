@@ -308,6 +308,35 @@ mod tests {
     }
 
     #[test]
+    fn a_wobbling_spindle_takes_the_axis_along() {
+        // Five times a second by three per cent up and down. The ramps take four fifths of what the axis can do; the
+        // wobble must fit into the rest.
+        let tau = std::f64::consts::TAU;
+        for rpm in [200.0, 600.0, 1200.0, 2400.0] {
+            let per_second = rpm / 60.0;
+            let plan = ThreadPlan::new(&[stretch(120.0, 1.5, 1.5)], rpm).expect("a thread");
+            let turns = |time: f64| per_second * (time + 0.03 / (5.0 * tau) * (5.0 * tau * time).sin());
+            let mut last = [0.0; 4];
+            let mut tick = 0;
+            while turns(f64::from(tick) * 1e-3) < plan.revolutions() {
+                let since_start = turns(f64::from(tick) * 1e-3);
+                let way = plan.way_mm(since_start);
+                if way > plan.run_in_mm() && way < 120.0 - plan.run_out_mm() {
+                    let nut = 1.5 * (since_start - plan.advance());
+                    assert!((way - nut).abs() < 1e-3, "{rpm} {way} {nut}");
+                }
+                last = [last[1], last[2], last[3], way];
+                let [p0, p1, p2, p3] = last;
+                let acceleration = (p3 - 2.0 * p2 + p1) * 1e6;
+                assert!(acceleration.abs() < LIMITS.acceleration_mm_per_s2 / 0.8, "{rpm} {acceleration}");
+                let jerk = (p3 - 3.0 * p2 + 3.0 * p1 - p0) * 1e9;
+                assert!(jerk.abs() < LIMITS.jerk_mm_per_s3 / 0.8, "{rpm} {jerk}");
+                tick += 1;
+            }
+        }
+    }
+
+    #[test]
     fn what_cannot_be_is_refused() {
         let too_fast = ThreadPlan::new(&[stretch(40.0, 6.0, 6.0)], 2400.0).err();
         assert_eq!(too_fast, Some(ThreadFault::TooFast { needed_mm_per_s: 240.0, limit_mm_per_s: 200.0 }));
