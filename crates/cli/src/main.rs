@@ -13,6 +13,7 @@ mod execution;
 mod fault;
 mod finding;
 mod output;
+mod part;
 mod passes;
 mod rates;
 mod render;

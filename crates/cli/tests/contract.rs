@@ -151,7 +151,7 @@ fn run_reports_and_writes_its_folder() {
     let out = folder.path("new/report");
     let ran = turnwright(&["run", &program, "--out", &out.display().to_string()]);
     assert_eq!(ran.status, 1, "{}", ran.err);
-    assert_eq!(support::names(&out), ["path.png", "path.svg", "report.html", "trace.jsonl"]);
+    assert_eq!(support::names(&out), ["part.svg", "path.png", "path.svg", "report.html", "trace.jsonl"]);
     assert!(ran.out.contains("fanuc-0i-tf, the default"), "{}", ran.out);
     assert!(ran.out.contains("stopped the program at line 6"), "{}", ran.out);
     let read = |name: &str| std::fs::read(out.join(name)).expect(name);

@@ -2,6 +2,7 @@
 
 pub mod html;
 pub mod jsonl;
+pub mod part_svg;
 #[cfg(feature = "png")]
 pub mod png;
 pub mod svg;

@@ -8,6 +8,7 @@
 //! format shows the commands as they are.
 
 pub mod formats;
+pub mod part;
 pub mod passes;
 pub mod path;
 mod words;

@@ -1,4 +1,4 @@
-//! What a whole program shows: faults that no single block has, and the setup it was written for.
+//! What a whole program shows: faults that no single block has, the setup it was written for, the [`part`].
 //!
 //! In: the commands of a program, one by one, and a [`Setup`](turnwright_control::Setup). Out: warnings of the
 //! [`Checks`], and what the setup leaves open, taken from the program, with every [`Assumption`] told as data.
@@ -8,6 +8,7 @@
 
 mod checks;
 mod inference;
+pub mod part;
 
 pub use checks::{Checked, Checks};
 pub use inference::{Assumption, Inference, Inferred};

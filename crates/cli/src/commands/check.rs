@@ -17,6 +17,7 @@ use crate::execution::Execution;
 use crate::fault::{Fault, Status, caught};
 use crate::finding::Finding;
 use crate::output::sarif::{self, SarifResult};
+use crate::part;
 use crate::render::Printer;
 use crate::session::Session;
 use crate::speech::Speech;
@@ -168,8 +169,8 @@ fn check(candidate: &Candidate, task: &Task<'_>) -> Checked {
 
 fn find(text: &ProgramText, options: &Check, printer: &Printer) -> Vec<Finding> {
     let started = Session::choose(text, &options.machine, printer.speech)
-        .and_then(|session| Ok((Execution::new(text, &session, &options.machine)?, session.setup)));
-    let (mut execution, setup) = match started {
+        .and_then(|session| Ok((Execution::new(text, &session, &options.machine)?, session)));
+    let (mut execution, session) = match started {
         Ok(started) => started,
         Err(mut finding) => {
             if finding.file.is_empty() {
@@ -185,8 +186,10 @@ fn find(text: &ProgramText, options: &Check, printer: &Printer) -> Vec<Finding> 
         while let Some(command) = execution.next_command() {
             checks.add(&command);
         }
-        let checked = checks.finish(&setup);
-        checked.findings.into_iter().for_each(|warning| execution.warn(warning));
+        let checked = checks.finish(&session.setup);
+        let part = part::machined(text, &session, &options.machine, &checked.inferred.setup);
+        let of_part = part.into_iter().flat_map(|part| part.findings);
+        checked.findings.into_iter().chain(of_part).for_each(|finding| execution.warn(finding));
     }
     let mut findings = execution.findings();
     if options.alarms_only {

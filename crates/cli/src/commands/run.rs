@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use turnwright_export::formats::jsonl;
+use turnwright_export::formats::part_svg::{PartDrawing, write_part_svg};
 use turnwright_export::formats::svg::{PictureOptions, write_svg};
 use turnwright_verify::Checks;
 
@@ -21,6 +22,7 @@ use crate::execution::Execution;
 use crate::fault::{Fault, Status, unwritable};
 use crate::finding::Finding;
 use crate::output::{WholeFile, sarif};
+use crate::part;
 use crate::passes::Passes;
 use crate::render::Printer;
 use crate::report::{Measure, RunReport, picture_language};
@@ -72,6 +74,10 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
 
     let checked = checks.finish(&session.setup);
     checked.findings.into_iter().for_each(|warning| execution.warn(warning));
+    let mut part = part::machined(&text, &session, &options.machine, &checked.inferred.setup);
+    if let Some(part) = &mut part {
+        part.findings.drain(..).for_each(|finding| execution.warn(finding));
+    }
     let findings = execution.findings();
     let status = findings.iter().map(Finding::status).max().unwrap_or(Status::Clean);
     let blocks = execution.interpreter().blocks_run();
@@ -86,6 +92,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         passes: passes.map(Passes::finish).unwrap_or_default(),
         decimals,
         assumptions: checked.inferred.assumptions,
+        part: part.and_then(part::drawn),
         blocks,
         stopped_at,
         written: Vec::new(),
@@ -169,9 +176,19 @@ impl OutFolder {
         WholeFile::write(&folder.join("report.html"), page.as_bytes(), printer.speech)?;
         WholeFile::write(&folder.join("path.svg"), picture.as_bytes(), printer.speech)?;
         WholeFile::write(&folder.join("path.png"), &png, printer.speech)?;
+        let mut names = vec!["report.html", "path.svg", "path.png", "trace.jsonl"];
+        if let Some((part, shape)) = &report.part {
+            let drawing = PartDrawing {
+                shape,
+                stock: Some(&part.stock),
+                title: report.title(),
+                language: picture_language(language),
+            };
+            WholeFile::write(&folder.join("part.svg"), write_part_svg(&drawing).as_bytes(), printer.speech)?;
+            names.push("part.svg");
+        }
         trace.finish()?;
-        let names = ["report.html", "path.svg", "path.png", "trace.jsonl"];
-        report.written = names.map(|name| folder.join(name).display().to_string()).to_vec();
+        report.written = names.iter().map(|name| folder.join(name).display().to_string()).collect();
         Ok(())
     }
 }

@@ -1,5 +1,8 @@
 //! The report of a run on a terminal.
 
+use turnwright_export::formats::part_svg::{mm, thread_text};
+use turnwright_export::part::PartShape;
+
 use super::{RunReport, TIME_PARTS, assumption_text, estimates, operation_name};
 use crate::render::clean;
 use crate::speech::Speech;
@@ -98,6 +101,9 @@ impl RunReport {
             None => label("no-cutting"),
         };
         rows.push((label("cutting-extents"), cutting));
+        if let Some((_, shape)) = &self.part {
+            rows.push((label("part"), part_text(shape, speech)));
+        }
         if let Some(rpm) = summary.rpm() {
             rows.push((label("spindle"), rpm_text(rpm.min, rpm.max)));
         }
@@ -124,6 +130,31 @@ impl RunReport {
         rows.push((label("time"), time));
         rows
     }
+}
+
+/// The part's size, and below it its cylinders and threads from the front.
+fn part_text(shape: &PartShape, speech: Speech) -> String {
+    let size = [
+        ("d", mm(shape.diameter_mm)),
+        ("l", mm(shape.z.1 - shape.z.0)),
+        ("v", mm(shape.volume_mm3 / 1000.0)),
+    ];
+    let fill = |key: &str, values: &[(&str, String)]| {
+        let values: Vec<(&str, &str)> = values.iter().map(|(name, value)| (*name, value.as_str())).collect();
+        speech.fill(key, &values)
+    };
+    let mut lines = vec![fill("part-size", &size)];
+    let place = |z: (f64, f64)| [("z1", mm(z.1)), ("z2", mm(z.0))];
+    for cylinder in &shape.cylinders {
+        let key = if cylinder.is_inside { "part-bore" } else { "part-cylinder" };
+        let [from, to] = place(cylinder.z);
+        lines.push(fill(key, &[("d", mm(cylinder.diameter_mm)), from, to]));
+    }
+    for thread in &shape.threads {
+        let [from, to] = place(thread.z);
+        lines.push(fill("part-thread", &[("thread", thread_text(thread)), from, to]));
+    }
+    lines.join("\n")
 }
 
 /// A range of spindle speeds.

@@ -32,6 +32,7 @@ impl RunReport {
             "diagnostics": diagnostics,
             "operations": self.operations_json(speech),
             "cutting_extents": self.extents_json(),
+            "part": self.part_json(),
             "spindle_rpm": self.measure.summary.rpm().map(|rpm| json!({ "min": rpm.min, "max": rpm.max })),
             "time": self.time_json(),
             "estimates": estimates,
@@ -85,6 +86,28 @@ impl RunReport {
             "x_max": extents.x_max.to_diameter().0.to_mm(),
             "z_min": extents.z_min.to_mm(),
             "z_max": extents.z_max.to_mm(),
+        })
+    }
+
+    /// Diameters and Z, millimetres.
+    fn part_json(&self) -> Value {
+        let Some((_, shape)) = &self.part else { return Value::Null };
+        let cylinders = shape.cylinders.iter().map(|one| {
+            json!({ "diameter": one.diameter_mm, "z_min": one.z.0, "z_max": one.z.1, "inside": one.is_inside })
+        });
+        let threads = shape.threads.iter().map(|one| {
+            json!({
+                "crest": one.crest_mm, "root": one.root_mm, "lead": one.lead_mm, "starts": one.starts,
+                "z_min": one.z.0, "z_max": one.z.1, "inside": one.is_inside,
+            })
+        });
+        json!({
+            "diameter": shape.diameter_mm,
+            "z_min": shape.z.0,
+            "z_max": shape.z.1,
+            "volume_mm3": shape.volume_mm3,
+            "cylinders": cylinders.collect::<Vec<_>>(),
+            "threads": threads.collect::<Vec<_>>(),
         })
     }
 

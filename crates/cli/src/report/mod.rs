@@ -9,11 +9,13 @@ use std::collections::BTreeMap;
 use turnwright_canon::Command;
 use turnwright_control::{CodeSystem, Control, Language, Machine, Parameters};
 use turnwright_diagnostics::{Argument, Diagnostic, Place, SourceId};
+use turnwright_export::part::PartShape;
 use turnwright_export::passes::Cycle;
 use turnwright_export::path::PathRecorder;
 use turnwright_motion::{Dynamics, Kind, Operation, OperationKind, Schedule, ShortLeadIn, Summary};
 use turnwright_units::{Length, Position, WorkTip, write_millimetres};
 use turnwright_verify::Assumption;
+use turnwright_verify::part::Part;
 
 use crate::finding::Finding;
 use crate::rates::rates;
@@ -115,6 +117,8 @@ pub(crate) struct RunReport {
     pub(crate) decimals: u8,
     /// What was assumed of stock and tools.
     pub(crate) assumptions: Vec<Assumption>,
+    /// The part, and how it is drawn; nothing when there is no stock.
+    pub(crate) part: Option<(Part, PartShape)>,
     /// Blocks executed.
     pub(crate) blocks: u64,
     /// The line of the alarm that ended the program.

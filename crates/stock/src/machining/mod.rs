@@ -37,6 +37,9 @@ use crate::{Cutter, Sweep};
 /// A contact that is less deep rubs, and is no event: a micrometre, above all rounding of commands.
 pub const GRAZE_MM: f64 = 1e-3;
 
+/// What comes off with less than this share of the volume that is still held is a pip left by facing, not the part.
+const PIP_SHARE: f64 = 0.005;
+
 /// The outlines of a tool, relative to its programmed point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToolShape {
@@ -65,6 +68,8 @@ struct Tool {
 #[derive(Clone, Debug)]
 pub struct Machining {
     section: Section,
+    /// What came off in front of all that is held.
+    cut_off: Option<Section>,
     /// Z of the end that the chuck holds.
     held_z: f64,
     tools: BTreeMap<u32, Tool>,
@@ -88,6 +93,7 @@ impl Machining {
         Self {
             held_z: section.bounds().map_or(0.0, |bounds| bounds.min.z),
             section,
+            cut_off: None,
             tools: BTreeMap::new(),
             obstacles: Vec::new(),
             rates,
@@ -121,6 +127,12 @@ impl Machining {
     /// What is left.
     pub const fn section(&self) -> &Section {
         &self.section
+    }
+
+    /// The finished part: the greatest piece that was cut off in front of all that is still held; what is left where
+    /// nothing was.
+    pub fn part(&self) -> &Section {
+        self.cut_off.as_ref().unwrap_or(&self.section)
     }
 
     /// The threads cut so far.
@@ -305,12 +317,23 @@ impl Machining {
         if pieces.len() < 2 || !pieces.iter().any(|piece| is_held(piece.bounds.min.z)) {
             return;
         }
+        let mut fallen = self.section.clone();
+        fallen.drop_pieces(|piece| is_held(piece.bounds.min.z));
         for piece in self.section.drop_pieces(|piece| !is_held(piece.bounds.min.z)) {
             // A speck between edges that nearly lie on each other is no part.
             if let Some(contact) = deep(Some(Contact::around(piece.bounds, piece.area_mm2, piece.volume_mm3)))
             {
                 teller.tell(EventKind::CutOff, Some(contact), || at);
             }
+        }
+        let is_in_front = match (fallen.bounds(), self.section.bounds()) {
+            (Some(fallen), Some(held)) => fallen.min.z >= held.max.z - GRAZE_MM,
+            _ => false,
+        };
+        let least_mm3 = PIP_SHARE * self.section.volume_mm3();
+        let most_mm3 = self.cut_off.as_ref().map_or(least_mm3, Section::volume_mm3);
+        if is_in_front && fallen.volume_mm3() > most_mm3 {
+            self.cut_off = Some(fallen);
         }
     }
 }

@@ -1,0 +1,213 @@
+//! The part that comes out: a program's commands on the stock, in the tools' shapes, beside what holds the work.
+//!
+//! In: the whole setup (given, or inferred in a run before this one) and the commands. Out: the finished section, its
+//! threads, and what was hit on the way, as diagnostics. A crash is an error where the setup names the stock (and the
+//! obstacle) and the tool; a warning where tool or obstacle were inferred, for the fault may lie in the guess. Where
+//! the stock itself was inferred nothing is told of crashes: a bar that is assumed too thick is hit by sound programs.
+//! A rapid that only drags along the wall that was just cut is a warning.
+//! Of tools that were inferred only what cuts is looked at: nobody said which holder it is.
+//!
+//! Invariant: what is kept is bounded; a program that is too long for [`PART_MOVES_MAX`] or a section that is too fine
+//! for [`SLABS_MAX`] ends the machining, never the run, and says so.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use turnwright_canon::{Action, Command, Origin};
+use turnwright_control::{Setup, SetupFault};
+use turnwright_diagnostics::{Diagnostic, Place, Severity, SourceId};
+use turnwright_geometry::{Outline, Point};
+use turnwright_stock::machining::{Event, EventKind, Obstacle, RapidRates, ThreadMark, ToolShape};
+use turnwright_stock::{Contact, Machining, Section};
+use turnwright_units::{Position, WorkTip};
+
+/// Moves that are cut out of the stock.
+pub const PART_MOVES_MAX: u64 = 5_000_000;
+
+/// Slabs of a section, some hundred bytes each.
+pub const SLABS_MAX: usize = 200_000;
+
+/// Findings of one kind; more of the same say nothing new.
+const FINDINGS_MAX: usize = 10;
+
+/// A rapid that overlaps the stock less than this drags along what the tool has just cut: it mars, it does not crash.
+const DRAG_MM: f64 = 0.5;
+
+/// Commands between two looks at the size of the section.
+const COMMANDS_PER_LOOK: u64 = 1024;
+
+/// A program that is being cut out of its stock.
+#[derive(Clone, Debug)]
+pub struct PartRun {
+    machining: Machining,
+    stock: Outline,
+    moves: u64,
+    commands: u64,
+    is_full: bool,
+    notebook: Notebook,
+}
+
+/// What came out.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The finished part: what was cut off last, else what the chuck still holds.
+    pub section: Section,
+    /// What it was before.
+    pub stock: Outline,
+    /// Its threads.
+    pub threads: Vec<ThreadMark>,
+    /// What was hit, and what is not shown.
+    pub findings: Vec<Diagnostic>,
+}
+
+/// What the setup names itself, and what is told already.
+#[derive(Clone, Debug, Default)]
+struct Notebook {
+    has_stock: bool,
+    has_chuck: bool,
+    has_tailstock: bool,
+    /// The stations that the setup names.
+    tools: BTreeSet<u32>,
+    tool: u32,
+    told: BTreeMap<&'static str, BTreeSet<(u32, u32)>>,
+    findings: Vec<Diagnostic>,
+}
+
+impl PartRun {
+    /// The stock of a setup, the tool at `start`; nothing when nobody knows the stock. `given` is the part of the setup
+    /// that was not inferred.
+    ///
+    /// # Errors
+    /// The key of the setup that is wrong, and the reason.
+    pub fn new(
+        setup: &Setup,
+        given: &Setup,
+        start: Position<WorkTip>,
+        rates: RapidRates,
+    ) -> Result<Option<Self>, SetupFault> {
+        let Some(stock) = setup.stock_outline()? else { return Ok(None) };
+        let no_section =
+            |_| SetupFault { message: "stock: reaches below the spindle axis".to_string(), line: 0 };
+        let section = Section::new(&stock).map_err(no_section)?;
+        let mut machining = Machining::new(section, start, rates);
+        let notebook = Notebook {
+            has_stock: given.stock.is_some(),
+            has_chuck: given.chuck.is_some(),
+            has_tailstock: given.tailstock.is_some(),
+            tools: given.tools.keys().filter_map(|name| name.parse().ok()).collect(),
+            ..Notebook::default()
+        };
+        let tools = setup.tools()?;
+        for (station, tool) in &tools {
+            let body = tool.body.clone().filter(|_| notebook.tools.contains(station));
+            machining.set_tool(*station, &ToolShape { cutting: tool.cutting.clone(), body });
+        }
+        // What moves before any tool is called is the first tool's doing, as it was when the setup was inferred.
+        if let Some((_, tool)) = tools.first_key_value() {
+            machining.set_tool(0, &ToolShape { cutting: tool.cutting.clone(), body: None });
+        }
+        if let Some(chuck) = setup.chuck_outlines()? {
+            machining.add_obstacle(Obstacle::Jaws, &chuck.jaw).map_err(no_section)?;
+            machining.add_obstacle(Obstacle::Chuck, &chuck.body).map_err(no_section)?;
+        }
+        if let Some(tailstock) = setup.tailstock_outline()? {
+            machining.add_obstacle(Obstacle::Tailstock, &tailstock).map_err(no_section)?;
+        }
+        Ok(Some(Self { machining, stock, moves: 0, commands: 0, is_full: false, notebook }))
+    }
+
+    /// Cuts a command out of the stock.
+    pub fn add(&mut self, command: &Command) {
+        if self.is_full {
+            return;
+        }
+        match command.action {
+            Action::Rapid { .. } | Action::Feed { .. } | Action::Thread { .. } => self.moves += 1,
+            Action::Tool { tool, .. } => self.notebook.tool = tool,
+            _ => {}
+        }
+        let Self { machining, notebook, .. } = self;
+        machining.advance(command, &mut |event| notebook.tell(&event));
+        self.commands += 1;
+        if self.commands.is_multiple_of(COMMANDS_PER_LOOK)
+            && (self.moves >= PART_MOVES_MAX || self.machining.section().slab_count() > SLABS_MAX)
+        {
+            self.is_full = true;
+            let note = Diagnostic::new(Severity::Note, "part-incomplete");
+            self.notebook.findings.push(note.at(place_of(&command.origin)));
+        }
+    }
+
+    /// Whether nothing more is cut, because there was too much of it.
+    pub const fn is_full(&self) -> bool {
+        self.is_full
+    }
+
+    /// The program is over.
+    pub fn finish(self) -> Part {
+        Part {
+            section: self.machining.part().clone(),
+            stock: self.stock,
+            threads: self.machining.threads().to_vec(),
+            findings: self.notebook.findings,
+        }
+    }
+}
+
+fn place_of(origin: &Origin) -> Place {
+    let source = SourceId(origin.source);
+    Place { source, line: origin.line, line_offset: u64::MAX, column: 1, end_column: 1 }
+}
+
+impl Notebook {
+    fn tell(&mut self, event: &Event) {
+        let has_tool = self.tools.contains(&self.tool);
+        let judged = |is_known: bool| if is_known { Severity::Error } else { Severity::Warning };
+        let is_drag = event.contact.as_ref().is_some_and(|contact| contact.depth_mm < DRAG_MM);
+        let (key, severity) = match event.kind {
+            EventKind::RapidIntoStock => ("rapid-into-stock", judged(has_tool && !is_drag)),
+            EventKind::BodyIntoStock => ("holder-into-stock", judged(has_tool)),
+            EventKind::IntoObstacle(Obstacle::Chuck) => {
+                ("tool-into-chuck", judged(self.has_chuck && has_tool))
+            }
+            EventKind::IntoObstacle(Obstacle::Jaws) => ("tool-into-jaws", judged(self.has_chuck && has_tool)),
+            EventKind::IntoObstacle(Obstacle::Tailstock) => {
+                ("tool-into-tailstock", judged(self.has_tailstock && has_tool))
+            }
+            EventKind::SpindleStopped => ("cut-without-spindle", Severity::Warning),
+            EventKind::NotTurned => ("part-not-turned", Severity::Note),
+            EventKind::CutOff => ("part-cut-off", Severity::Note),
+            EventKind::NoShape { .. } => ("tool-without-shape", Severity::Note),
+        };
+        let is_of_stock = !matches!(event.kind, EventKind::NotTurned | EventKind::NoShape { .. });
+        if is_of_stock && !self.has_stock {
+            return;
+        }
+        let told = self.told.entry(key).or_default();
+        if told.len() >= FINDINGS_MAX || !told.insert((event.origin.source, event.origin.line)) {
+            return;
+        }
+        let Point { x, z } = event.place;
+        let contact = event.contact.as_ref();
+        self.findings.push(
+            Diagnostic::new(severity, key)
+                .at(place_of(&event.origin))
+                .with("tool", i64::from(self.tool))
+                .with("x", millimetres(2.0 * x))
+                .with("z", millimetres(z))
+                .with("depth", contact.map_or_else(String::new, |contact| millimetres(contact.depth_mm)))
+                .with("value", contact.map_or_else(String::new, size)),
+        );
+    }
+}
+
+/// Thousandths of a millimetre.
+fn millimetres(mm: f64) -> String {
+    // Adding nothing makes minus zero plain.
+    ((mm * 1e3).round() / 1e3 + 0.0).to_string()
+}
+
+/// Greatest diameter and length.
+fn size(contact: &Contact) -> String {
+    let bounds = &contact.bounds;
+    format!("⌀{} × {} mm", millimetres(2.0 * bounds.max.x), millimetres(bounds.max.z - bounds.min.z))
+}

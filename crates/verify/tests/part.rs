@@ -1,0 +1,133 @@
+//! The parts that programs leave, and what they hit: with a setup that says everything, and with one that was inferred.
+#![allow(clippy::disallowed_methods, reason = "tests read files")]
+
+mod support;
+
+use std::path::Path;
+
+use turnwright_control::Setup;
+use turnwright_diagnostics::Severity;
+use turnwright_stock::machining::RapidRates;
+use turnwright_verify::Inference;
+use turnwright_verify::part::{Part, PartRun};
+
+const RATES: RapidRates = RapidRates { x_mm_per_min: 12_000.0, z_mm_per_min: 16_000.0 };
+
+/// Runs a program twice, as the command line does: once for the setup, once for the part.
+fn part(text: &str, control: &str, given: &Setup) -> Part {
+    let run = support::run(text, control, given);
+    assert_eq!(run.alarm, None);
+    let mut inference = Inference::new(run.start);
+    run.commands.iter().for_each(|command| inference.add(command));
+    let setup = inference.finish(given).setup;
+    let mut part = PartRun::new(&setup, given, run.start, RATES).expect("a setup").expect("a stock");
+    run.commands.iter().for_each(|command| part.add(command));
+    assert!(!part.is_full());
+    part.finish()
+}
+
+fn example(file: &str) -> Part {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(file);
+    let text = std::fs::read_to_string(&path).expect("an example");
+    let setup = std::fs::read_to_string(path.with_extension("toml"))
+        .map_or_else(|_| Setup::default(), |words| Setup::parse(&words).expect("a setup"));
+    part(&text, file.split('/').next().expect("a folder"), &setup)
+}
+
+/// The outer diameters at some Z, and no crash.
+fn drawing(file: &str, diameters: &[(f64, f64)]) {
+    let part = example(file);
+    assert!(part.findings.is_empty(), "{file}: {:?}", part.findings);
+    for &(z, diameter) in diameters {
+        let rings = part.section.rings(z);
+        let found = rings.last().map_or(0.0, |ring| 2.0 * ring.1);
+        assert!((found - diameter).abs() < 1e-5, "{file}: {found} instead of {diameter} at Z{z}");
+    }
+}
+
+#[test]
+fn without_a_setup_the_examples_leave_the_parts_of_their_drawings_and_hit_nothing() {
+    drawing("fanuc-0i-mate-tb/O4001-corner-radius.nc", &[(-1.0, 16.0), (-5.0, 20.0), (-22.0, 20.0)]);
+    drawing("fanuc-0i-mate-tb/O4002-corner-chamfer.nc", &[(-0.5, 17.0), (-2.0, 20.0), (-22.0, 20.0)]);
+    drawing("fanuc-0i-mate-tb/O4003-turning-cycle.nc", &[(-0.5, 20.0), (-24.95, 20.0)]);
+    drawing("fanuc-0i-mate-tb/O4004-taper-turning-cycle.nc", &[(-10.0, 17.0), (-24.999, 19.9998)]);
+    drawing("fanuc-0i-mate-tb/O4007-facing-cycle.nc", &[(-5.0, 20.0), (-9.99, 20.0)]);
+    let shaft = [(-1.0, 15.0), (-15.0, 15.0), (-22.5, 22.5), (-30.0, 30.0), (-42.0, 30.0)];
+    drawing("fanuc-0i-mate-tb/O4008-rough-turning.nc", &shaft);
+    drawing("fanuc-0i-mate-tb/O4009-rough-facing.nc", &[(-5.0, 30.0), (-7.0, 30.0), (-12.5, 35.0)]);
+    let figure = [(-5.0, 50.0), (-12.5, 55.0), (-20.0, 60.0), (-31.0, 64.0)];
+    for axes in ["x-and-z", "x", "z"] {
+        drawing(&format!("fanuc-0i-mate-tb/O4010-from-bar-{axes}.nc"), &figure);
+    }
+    drawing("gsk-988ta/O0005-rough-facing.nc", &[(-10.0, 60.0), (-20.0, 80.0), (-34.0, 80.0)]);
+    drawing("gsk-980tdi/O0008-radial-groove.nc", &[(-35.0, 40.0), (-49.9, 40.0)]);
+    let thread = example("fanuc-0i-mate-tb/O4005-thread-cycle.nc");
+    assert!(thread.findings.is_empty(), "{:?}", thread.findings);
+    assert_eq!((thread.threads.len(), thread.threads[0].lead_mm), (1, 1.5));
+    assert!((2.0 * thread.threads[0].bounds.min.x - 17.8).abs() < 1e-5);
+}
+
+const STOCK: &str = "[stock]\ndiameter_mm = 50\nlength_mm = 80\n[chuck]\ngrip_mm = 20\n";
+const TOOL: &str = "[tools.1]\ninsert = \"CNMG120404\"\nholder = \"PCLNR2525M12\"\n";
+
+/// Keys, severities and lines of what is found.
+fn found(text: &str, setup: &str) -> Vec<(&'static str, Severity, u32)> {
+    let part = part(text, "fanuc-0i-tf", &Setup::parse(setup).expect("a setup"));
+    let findings = part.findings.iter();
+    findings.map(|one| (one.key, one.severity, one.place.expect("a place").line)).collect()
+}
+
+#[test]
+fn a_rapid_into_stock_is_an_error_when_stock_and_tool_are_given() {
+    let text = "O1\nT0101\nG97 S500 M03\nG00 X60. Z5.\nG00 X44. Z-10.\nG01 Z-20. F0.2\nX52.\nG00 X60.\nM30\n";
+    let both = found(text, &format!("{STOCK}{TOOL}"));
+    assert!(both.contains(&("rapid-into-stock", Severity::Error, 5)), "{both:?}");
+    assert!(found(text, STOCK).contains(&("rapid-into-stock", Severity::Warning, 5)));
+    // Nobody knows the bar: it may be thinner.
+    assert_eq!(found(text, TOOL), []);
+    let sound = text.replace("G00 X44. Z-10.", "G00 X44. Z2.");
+    assert_eq!(found(&sound, &format!("{STOCK}{TOOL}")), []);
+    // Straight out at rapid drags the nose over the shoulder, which leans by five degrees as its edge does.
+    let drags = found(&sound.replace("X52.\n", ""), &format!("{STOCK}{TOOL}"));
+    assert_eq!(drags, [("rapid-into-stock", Severity::Warning, 7)]);
+}
+
+#[test]
+fn the_chuck_is_told() {
+    // The jaws begin at Z-60.
+    let text = "O1\nT0101\nG97 S500 M03\nG00 X46. Z2.\nG01 Z-65. F0.2\nX52.\nG00 X160.\nZ5.\nM30\n";
+    let told = found(text, &format!("{STOCK}{TOOL}"));
+    assert!(told.contains(&("tool-into-jaws", Severity::Error, 5)), "{told:?}");
+    let sound = found(&text.replace("Z-65.", "Z-50."), &format!("{STOCK}{TOOL}"));
+    assert_eq!(sound, []);
+}
+
+#[test]
+fn what_is_cut_off_is_the_part_and_a_pip_is_not() {
+    let text = "O1\nT0202\nG97 S500 M03\nG00 X52. Z-33.\nG01 X-1. F0.1\nG00 X60.\nM30\n";
+    let setup = format!("{STOCK}[tools.2]\nkind = \"cut-off\"\nwidth_mm = 3\nreach_mm = 30\ntip = 3\n");
+    let cut = part(text, "fanuc-0i-tf", &Setup::parse(&setup).expect("a setup"));
+    assert!(cut.findings.iter().any(|one| one.key == "part-cut-off"), "{:?}", cut.findings);
+    let bounds = cut.section.bounds().expect("a part");
+    assert!((bounds.min.z + 30.0).abs() < 1e-9 && bounds.max.z == 0.0, "{bounds:?}");
+    // Facing in two steps leaves a thin pip in front that falls; the part is what is held.
+    let text = "O1\nT0202\nG97 S500 M03\nG00 X52. Z-3.5\nG01 X2. F0.1\nG00 X60.\nZ-5.\nG01 X-1. F0.1\nG00 X60.\nM30\n";
+    let faced = part(
+        &text.replace("Z-3.5\nG01 X2.", "Z-3.\nG01 X2."),
+        "fanuc-0i-tf",
+        &Setup::parse(&setup).expect("a setup"),
+    );
+    assert!(faced.section.bounds().expect("a part").min.z < -70.0);
+}
+
+#[test]
+fn findings_are_bounded() {
+    let mut text = String::from("O1\nT0101\nG97 S500 M03\nG00 X60. Z5.\n");
+    for index in 1..60 {
+        text.push_str(&format!("G00 X{}. Z-{index}.\nX60.\n", 48 - index % 20));
+    }
+    text.push_str("M30\n");
+    let told = found(&text, &format!("{STOCK}{TOOL}"));
+    let rapids = told.iter().filter(|one| one.0 == "rapid-into-stock").count();
+    assert_eq!(rapids, 10);
+}
