@@ -265,7 +265,8 @@ impl Clock {
 
     /// Minutes as seconds; a way whose time is not known is counted and takes none.
     fn known_minutes(&mut self, minutes: Option<f64>, length_mm: f64) -> Way {
-        let seconds = minutes.map(|minutes| minutes * 60.0).filter(|seconds| *seconds <= SECONDS_MAX);
+        let seconds =
+            minutes.map(|minutes| minutes * 60.0).filter(|seconds| (0.0..=SECONDS_MAX).contains(seconds));
         self.unknown_feeds += u64::from(seconds.is_none());
         Way { seconds: seconds.unwrap_or(0.0), length_mm }
     }
@@ -446,7 +447,7 @@ impl Clock {
             return 0.0;
         }
         let limits = dynamics.threading(&[dx_mm / long_mm, dz_mm / long_mm, 0.0, 0.0, 0.0, 0.0]);
-        0.5 / rpm + limits.ramp_s(lead.0.to_mm() * rpm / 60.0) / 60.0
+        0.5 / rpm + limits.ramp_s(lead.0.to_mm().abs() * rpm / 60.0) / 60.0
     }
 
     fn thread(

@@ -7,7 +7,8 @@ use turnwright_canon::{
     SpindleSpeed, SpindleState, Turn,
 };
 use turnwright_motion::{
-    ArcPath, Clock, MachineRates, RapidSurfaceSpeed, SPIRAL_TOLERANCE, Summary, TIME_TOLERANCE, Timing,
+    ArcPath, Clock, Dynamics, MachineRates, RapidSurfaceSpeed, SPIRAL_TOLERANCE, Schedule, Summary,
+    TIME_TOLERANCE, Timing,
 };
 use turnwright_units::{
     Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position, Radius, Revolutions, Rpm, Seconds,
@@ -377,6 +378,25 @@ fn nothing_makes_a_time_that_is_no_number() {
         }
         assert!(clock.totals().total_s().is_finite());
         assert_eq!(clock.totals(), summary.totals());
+    }
+}
+
+#[test]
+fn with_acceleration_too_every_command_gets_a_time() {
+    let mut random = Random(0x1dea_0008);
+    for round in 0..200 {
+        let rates = MachineRates { dynamics: Some(Dynamics::default()), ..MachineRates::default() };
+        let mut schedule = Schedule::new(at(10.0, 10.0), rates);
+        let mut timed = 0;
+        for _ in 0..50 {
+            schedule.push(Command::new(any_action(&mut random), Origin::line(1)));
+        }
+        schedule.finish();
+        while let Some((command, timing)) = schedule.next_known() {
+            assert!(timing.seconds.is_finite() && timing.seconds >= 0.0, "{round} {command:?} {timing:?}");
+            timed += 1;
+        }
+        assert_eq!(timed, 50);
     }
 }
 
