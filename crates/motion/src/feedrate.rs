@@ -32,6 +32,9 @@ const RATIO_MAX: f64 = 1.03;
 /// Shorter stretches change nothing, mm.
 const STRETCH_MIN_MM: f64 = 0.01;
 
+/// Stretches of a leg: with more, a leg of no sensible length would take for ever.
+const STRETCHES_MAX: f64 = 8192.0;
+
 /// Gives the stretches of a leg.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stretches {
@@ -68,7 +71,8 @@ impl Stretches {
                     })
                 };
                 let mut length = rest_mm;
-                while length > 2.0 * STRETCH_MIN_MM && !is_even(length) {
+                let shortest = STRETCH_MIN_MM.max(self.leg.length_mm / STRETCHES_MAX);
+                while length > 2.0 * shortest && !is_even(length) {
                     length /= 2.0;
                 }
                 let minutes_per_mm = [(0.0, 1.0), (0.5, 4.0), (1.0, 1.0)]
