@@ -143,16 +143,17 @@ pub(crate) enum TraceFormat {
     Human,
 }
 
-/// Runs a program and reports alarms, warnings, tools, extents and time.
+/// Runs a program and reports alarms, warnings, tools, extents, the part and the time.
 ///
-/// The program runs as on the control: cycles, corners, feeds and all. With --out the report, the picture and
-/// the trace are written into a folder.
+/// The program runs as on the control: cycles, corners, feeds and all. The part is cut out of the stock that the setup
+/// gives, or that the program seems to be written for. With --out the report, the pictures of path and part, and the
+/// trace are written into a folder.
 #[derive(Debug, Args)]
 #[command(after_long_help = examples("run"))]
 pub(crate) struct Run {
     /// The program; - for standard input
     pub(crate) file: PathBuf,
-    /// Folder for the report, the picture and the trace; made when it does not exist
+    /// Folder for the report, the pictures and the trace; made when it does not exist
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Form of the report
