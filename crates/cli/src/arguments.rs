@@ -63,6 +63,7 @@ pub(crate) enum Command {
     Trace(Trace),
     Plot(Plot),
     Motion(Motion),
+    Time(Time),
     Explain(Explain),
     Controls(Controls),
     Data(Data),
@@ -233,6 +234,26 @@ pub(crate) struct Motion {
     pub(crate) machine: Machine,
 }
 
+/// Tells how long programs take, and what for.
+///
+/// One program: by cause, tool, operation and line. Many programs and folders: a table with a line for each and their
+/// sum. What only the shop knows, such as tool change, bar feed and M codes, stands in the setup file under [rates].
+#[derive(Debug, Args)]
+#[command(after_long_help = examples("time"))]
+pub(crate) struct Time {
+    /// Programs and folders; - for standard input
+    #[arg(required = true, value_name = "FILE")]
+    pub(crate) files: Vec<PathBuf>,
+    /// Times block by block (.csv; of many programs a line for each), or drawn over time (.svg, .png)
+    #[arg(short, long, value_name = "OUT.csv|OUT.svg|OUT.png", value_hint = clap::ValueHint::FilePath)]
+    pub(crate) output: Option<PathBuf>,
+    /// Form of the answer
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub(crate) format: LookupFormat,
+    #[command(flatten)]
+    pub(crate) machine: Machine,
+}
+
 /// Says what a G or M code, an alarm or a parameter means, or what each pass of a cycle does and why.
 #[derive(Debug, Args)]
 #[command(after_long_help = examples("explain"))]
@@ -346,8 +367,20 @@ pub(crate) struct Man {
 }
 
 /// The commands that have a page.
-const COMMAND_NAMES: [&str; 11] =
-    ["run", "check", "trace", "plot", "motion", "explain", "controls", "data", "setup", "completions", "man"];
+const COMMAND_NAMES: [&str; 12] = [
+    "run",
+    "check",
+    "trace",
+    "plot",
+    "motion",
+    "time",
+    "explain",
+    "controls",
+    "data",
+    "setup",
+    "completions",
+    "man",
+];
 
 /// A text of the help, in the language of the environment: the options are not known yet.
 fn text(key: &'static str) -> &'static str {

@@ -74,6 +74,11 @@ impl Finding {
         }
     }
 
+    /// Whether it stops a program, or would.
+    pub(crate) fn is_alarm_or_error(&self) -> bool {
+        self.is_failure || matches!(self.diagnostic.severity, Severity::Alarm | Severity::Error)
+    }
+
     /// The control's own number where it has one, else ours, else the name.
     pub(crate) fn id<'a>(&'a self, messages: &'a Messages) -> Cow<'a, str> {
         messages.id_of(&self.diagnostic, self.ids).unwrap_or(Cow::Borrowed(self.diagnostic.key))

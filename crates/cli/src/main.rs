@@ -15,6 +15,7 @@ mod finding;
 mod output;
 mod part;
 mod passes;
+mod progress;
 mod rates;
 mod render;
 mod report;

@@ -8,32 +8,52 @@ use turnwright_verify::part::{Part, PartRun};
 use crate::arguments::Machine;
 use crate::environment::ProgramText;
 use crate::execution::Execution;
+use crate::finding::Finding;
+use crate::report::Measure;
 use crate::session::Session;
 
-/// Cuts the program out of its stock. `setup` is the whole setup, with what the first run showed; nothing comes back
-/// when there is no stock, for the program cuts nothing.
+/// Cuts the program out of its stock, and measures what it does, when that is wanted. `setup` is the whole setup, with
+/// what the first run showed; nothing comes back when there is no stock, for the program cuts nothing.
+///
+/// # Errors
+/// What the caller's look at the run gives: it may write what has been measured so far.
 pub(crate) fn machined(
     text: &ProgramText,
     session: &Session,
     options: &Machine,
     setup: &Setup,
-) -> Option<Part> {
-    setup.stock.as_ref()?;
+    mut measure: Option<&mut Measure>,
+    look: &mut dyn FnMut(&Execution<'_>, &mut Measure) -> Result<(), Finding>,
+) -> Result<Option<Part>, Finding> {
+    if setup.stock.is_none() && measure.is_none() {
+        return Ok(None);
+    }
     // What the program prints was written by the first run.
     let options = Machine { program_output: None, ..options.clone() };
-    let machine = session.setup.machine().ok()?.limited_by(&session.control.parameters);
+    let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
+    let machine = machine.limited_by(&session.control.parameters);
     let rates =
         RapidRates { x_mm_per_min: machine.rapid_x_mm_per_min, z_mm_per_min: machine.rapid_z_mm_per_min };
-    let mut execution = Execution::new(text, session, &options).ok()?;
+    let mut execution = Execution::new(text, session, &options)?;
     let start = execution.interpreter().position();
-    let mut run = PartRun::new(setup, &session.setup, start, rates).ok()??;
+    // A setup that is no setup was told of by the first run.
+    let mut run = PartRun::new(setup, &session.setup, start, rates).ok().flatten();
     while let Some(command) = execution.next_command() {
-        run.add(&command);
-        if run.is_full() {
-            break;
+        let removed = run.as_mut().map(|run| run.add(&command));
+        match &mut measure {
+            Some(measure) => {
+                let removed_mm3 = removed.flatten().map(|removed| removed.volume_mm3);
+                measure.add(command, removed_mm3);
+                look(&execution, measure)?;
+            }
+            None if run.as_ref().is_none_or(PartRun::is_full) => break,
+            None => {}
         }
     }
-    Some(run.finish())
+    if let Some(measure) = measure {
+        measure.finish();
+    }
+    Ok(run.map(PartRun::finish))
 }
 
 /// How a part is drawn; nothing when nothing is left of it.

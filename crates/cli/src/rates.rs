@@ -1,11 +1,11 @@
 //! What the machine of a setup can do, for the motion crate.
 
 use turnwright_control::{Machine, Parameters};
-use turnwright_motion::{AxisDynamics, Dynamics, MachineRates, RapidSurfaceSpeed};
+use turnwright_motion::{AuxiliaryTimes, AxisDynamics, Dynamics, MachineRates, RapidSurfaceSpeed};
 use turnwright_units::Rpm;
 
 /// Rates, times, acceleration and jerk.
-pub(crate) fn rates(machine: &Machine, parameters: &Parameters) -> MachineRates {
+pub(crate) fn rates(machine: &Machine, parameters: &Parameters, stops_optionally: bool) -> MachineRates {
     let axes = &machine.axes;
     let usual = MachineRates::default();
     let rapid_y = axes.y.as_ref().map(|axis| axis.rapid_mm_per_min);
@@ -23,6 +23,10 @@ pub(crate) fn rates(machine: &Machine, parameters: &Parameters) -> MachineRates 
         tool_change_s: machine.tool_change_s,
         spindle_ramp_rpm_per_s: machine.spindle_ramp_rpm_per_s,
         auxiliary_s: machine.auxiliary_s,
+        auxiliary_times: AuxiliaryTimes::new(machine.auxiliary_times()),
+        stop_s: machine.stop_s,
+        optional_stop_s: if stops_optionally { machine.stop_s } else { 0.0 },
+        loading_s: machine.loading_s + machine.bar_feed_s,
         rpm_max: (machine.rpm_max > 0).then_some(Rpm(machine.rpm_max)),
         rpm_min_surface: machine.rpm_min_surface,
         rapid_surface_speed: if parameters.bit("rapid-surface-speed-at-current-point") {

@@ -151,7 +151,10 @@ fn run_reports_and_writes_its_folder() {
     let out = folder.path("new/report");
     let ran = turnwright(&["run", &program, "--out", &out.display().to_string()]);
     assert_eq!(ran.status, 1, "{}", ran.err);
-    assert_eq!(support::names(&out), ["part.svg", "path.png", "path.svg", "report.html", "trace.jsonl"]);
+    assert_eq!(
+        support::names(&out),
+        ["part.svg", "path.png", "path.svg", "report.html", "time.svg", "times.csv", "trace.jsonl"]
+    );
     assert!(ran.out.contains("fanuc-0i-tf, the default"), "{}", ran.out);
     assert!(ran.out.contains("stopped the program at line 6"), "{}", ran.out);
     let read = |name: &str| std::fs::read(out.join(name)).expect(name);
@@ -208,6 +211,72 @@ fn motion_is_a_table_that_ends_where_the_program_does() {
     assert_eq!((ran.status, ran.out.as_str()), (0, ""));
     assert_eq!(std::fs::read_to_string(&table).expect("the table").lines().count(), rows.len() + 1);
     assert_eq!(turnwright(&["motion", &program, "--rate", "0"]).status, 2);
+}
+
+/// Seconds with nine decimals as whole nanoseconds.
+fn nanoseconds(text: &str) -> u128 {
+    let (seconds, rest) = text.split_once('.').expect("a point");
+    assert_eq!(rest.len(), 9, "{text}");
+    seconds.parse::<u128>().expect("seconds") * 1_000_000_000 + rest.parse::<u128>().expect("nanoseconds")
+}
+
+#[test]
+fn the_times_of_every_example_add_up_by_block_and_by_cause() {
+    let folder = Folder::new();
+    let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
+    let all = folder.path("all.csv").display().to_string();
+    let ran = turnwright(&["time", examples, "-o", &all, "--format", "json"]);
+    let document: Value = serde_json::from_str(&ran.out).expect("JSON");
+    let programs = std::fs::read_to_string(&all).expect("a table");
+    let mut sum = 0;
+    for (row, program) in programs.lines().skip(1).zip(document["programs"].as_array().expect("programs")) {
+        let cells: Vec<&str> = row.split(',').collect();
+        assert_eq!(cells[0], program["file"]);
+        let total = nanoseconds(cells[1]);
+        assert_eq!(cells[2..12].iter().map(|cell| nanoseconds(cell)).sum::<u128>(), total, "{row}");
+        let table = folder.path("one.csv").display().to_string();
+        turnwright(&["time", cells[0], "-o", &table]);
+        let blocks = std::fs::read_to_string(&table).expect("a table");
+        let mut of_blocks = 0;
+        for block in blocks.lines().skip(1) {
+            let cells: Vec<&str> = block.split(',').collect();
+            assert_eq!(nanoseconds(cells[0]), of_blocks, "{block}");
+            let causes: u128 = cells[2..12].iter().map(|cell| nanoseconds(cell)).sum();
+            assert_eq!(nanoseconds(cells[1]), causes, "{block}");
+            of_blocks += causes;
+        }
+        assert_eq!(of_blocks, total, "{row}");
+        sum += total;
+    }
+    assert!((document["time"]["total_s"].as_f64().expect("seconds") - sum as f64 / 1e9).abs() < 1e-6);
+    assert!(document["programs"].as_array().expect("programs").len() > 20 && ran.status == 1);
+}
+
+#[test]
+fn time_counts_what_the_shop_knows_and_tells_of_alarms() {
+    let folder = Folder::new();
+    let setup = folder.file(
+        "shop.toml",
+        "[rates]\ntool_change_s = 3\nstop_s = 20\nbar_feed_s = 8\nauxiliary_m_s = { 10 = 2.5 }\n",
+    );
+    let file = folder.file("part.nc", "T0101\nM10\nM11\nM01\nM00\nM30\n");
+    let time = |more: &[&str]| -> Value {
+        let ran = turnwright(&[&["time", &file, "--setup", &setup, "--format", "json"], more].concat());
+        serde_json::from_str::<Value>(&ran.out).expect("JSON")["time"].clone()
+    };
+    let seconds = |time: &Value, name: &str| time[name].as_f64().expect("seconds");
+    let plain = time(&[]);
+    assert_eq!(seconds(&plain, "tool_change_s"), 3.0);
+    assert_eq!((seconds(&plain, "stop_s"), seconds(&plain, "loading_s")), (20.0, 8.0));
+    assert!((seconds(&plain, "other_s") - 2.7).abs() < 1e-9);
+    assert_eq!(seconds(&time(&["--optional-stop"]), "stop_s"), 40.0);
+    let alarms = folder.file("alarms.nc", ALARMS);
+    let ran = turnwright(&["time", &file, &alarms, "--lang", "en"]);
+    assert_eq!(ran.status, 1);
+    assert!(ran.err.contains("alarm[PS0062]"), "{}", ran.err);
+    assert!(ran.out.contains("until the alarm in line 6") && ran.out.contains("all 2"), "{}", ran.out);
+    assert_eq!(turnwright(&["time", &file, &alarms, "-o", "x.svg"]).status, 2);
+    assert_eq!(turnwright(&["time", "missing.nc"]).status, 2);
 }
 
 #[test]

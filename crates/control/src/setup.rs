@@ -76,6 +76,18 @@ pub struct Machine {
     pub tool_change_s: f64,
     pub spindle_ramp_rpm_per_s: f64,
     pub auxiliary_s: f64,
+    /// M codes that take another time, by number.
+    #[serde(default)]
+    pub auxiliary_m_s: BTreeMap<String, f64>,
+    /// Until the operator presses cycle start after M00, and after M01 where that stops.
+    #[serde(default)]
+    pub stop_s: f64,
+    /// Once a piece, at the end of the program: loading and unloading.
+    #[serde(default)]
+    pub loading_s: f64,
+    /// Once a piece, at the end of the program: bar feed.
+    #[serde(default)]
+    pub bar_feed_s: f64,
     pub rpm_max: u32,
     pub rpm_min_surface: u32,
     pub reference: AxisPair,
@@ -411,6 +423,12 @@ pub fn machine_names() -> impl Iterator<Item = &'static str> {
     embedded::MACHINES.iter().map(|(name, _)| *name)
 }
 
+/// No time of a machine is longer.
+const DAY_S: f64 = 86_400.0;
+
+/// M codes with a time of their own.
+pub const AUXILIARY_TIMES_MAX: usize = 16;
+
 impl Machine {
     /// The machine as the control's parameters limit it: rapid traverse, cutting feed, spindle speed, and the lowest
     /// speed of constant surface speed. A parameter of 0 leaves the machine's own value.
@@ -453,6 +471,35 @@ impl Machine {
             self.rpm_min_surface = rpm as u32;
         }
         self
+    }
+
+    /// Codes and seconds of the M codes whose time is known.
+    pub fn auxiliary_times(&self) -> impl Iterator<Item = (u32, f64)> {
+        self.auxiliary_m_s.iter().filter_map(|(code, seconds)| Some((code.parse().ok()?, *seconds)))
+    }
+
+    /// What no time can be.
+    fn time_fault(&self) -> Option<String> {
+        let is_time = |seconds: f64| (0.0..=DAY_S).contains(&seconds);
+        let times = [
+            ("tool_change_s", self.tool_change_s),
+            ("auxiliary_s", self.auxiliary_s),
+            ("stop_s", self.stop_s),
+            ("loading_s", self.loading_s),
+            ("bar_feed_s", self.bar_feed_s),
+        ];
+        if let Some((key, _)) = times.into_iter().find(|(_, seconds)| !is_time(*seconds)) {
+            return Some(format!("{key}: from 0 to {DAY_S} seconds"));
+        }
+        let count = self.auxiliary_m_s.len();
+        if count > AUXILIARY_TIMES_MAX {
+            return Some(format!("auxiliary_m_s: at most {AUXILIARY_TIMES_MAX} M codes, not {count}"));
+        }
+        self.auxiliary_m_s.iter().find_map(|(code, seconds)| {
+            let is_code = code.bytes().all(|byte| byte.is_ascii_digit()) && code.parse::<u32>().is_ok();
+            let why = if is_code { "from 0 to 86400 seconds" } else { "the key is the number of an M code" };
+            (!is_code || !is_time(*seconds)).then(|| format!("auxiliary_m_s.{code}: {why}"))
+        })
     }
 }
 
@@ -663,6 +710,9 @@ impl Setup {
             let message = "corner_s is at most 1, in_position_s from 0 to 60".to_string();
             return Err(SetupFault { message, line: 0 });
         }
+        if let Some(message) = machine.time_fault() {
+            return Err(SetupFault { message, line: 0 });
+        }
         match machine.axes.fault() {
             Some(message) => Err(SetupFault { message, line: 0 }),
             None => Ok(machine),
@@ -730,6 +780,16 @@ mod tests {
         assert_eq!(setup.machine().expect("machine").rapid_x_mm_per_min, 6000.0);
         let setup = Setup::parse("[rates]\nrapid_y = 1\n").expect("setup");
         assert!(setup.machine().is_err());
+        let setup = Setup::parse("[rates]\nbar_feed_s = 8\nauxiliary_m_s = { 10 = 2.5 }\n").expect("setup");
+        let machine = setup.machine().expect("machine");
+        assert_eq!((machine.bar_feed_s, machine.stop_s), (8.0, 0.0));
+        assert_eq!(machine.auxiliary_times().collect::<Vec<_>>(), [(10, 2.5)]);
+        for wrong in
+            ["stop_s = -1", "loading_s = 1e6", "auxiliary_m_s = { x = 1 }", "auxiliary_m_s = { 10 = -1 }"]
+        {
+            let setup = Setup::parse(&format!("[rates]\n{wrong}\n")).expect("setup");
+            assert!(setup.machine().is_err(), "{wrong}");
+        }
         let setup = Setup::parse("machine = \"turn-mill\"\n[axes]\nc.rapid_deg_per_min = 9000\nb = false\n");
         let axes = setup.expect("setup").machine().expect("machine").axes;
         assert_eq!(axes.c.map(|axis| (axis.number, axis.rapid_deg_per_min)), Some((4, 9000.0)));

@@ -6,3 +6,5 @@ pub mod part_svg;
 #[cfg(feature = "png")]
 pub mod png;
 pub mod svg;
+pub mod time_svg;
+pub mod times_csv;

@@ -11,6 +11,7 @@ pub mod formats;
 pub mod part;
 pub mod passes;
 pub mod path;
+pub mod timeline;
 mod words;
 
 pub use words::Language;

@@ -15,26 +15,8 @@ use crate::leg::{Place, X, Z};
 use crate::path::{ArcPath, point, stretches};
 use crate::spindle::{Order, Spindle};
 use crate::surface::Slowness;
+use crate::totals::{Kind, SECONDS_MAX, Totals};
 use crate::{MachineRates, RapidSurfaceSpeed};
-
-/// What the time of a command is spent on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Kind {
-    /// Positioning.
-    Rapid,
-    /// A cutting move.
-    Cutting,
-    /// A move in step with the spindle.
-    Threading,
-    /// Standing still by order.
-    Dwell,
-    /// A new tool number.
-    ToolChange,
-    /// A new speed of the spindle.
-    Spindle,
-    /// Everything else: coolant, auxiliary functions, stops, messages.
-    Other,
-}
 
 /// The spindle speeds of a move, rpm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,39 +57,6 @@ pub struct Timing {
     pub rpm: Option<RpmRange>,
 }
 
-/// Sums of seconds and lengths.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Totals {
-    /// Seconds by [`Kind`], in its order; a cut's wait for the spindle is the spindle's.
-    seconds: [f64; 7],
-    /// Millimetres by [`Kind`], in its order.
-    length_mm: [f64; 7],
-}
-
-impl Totals {
-    /// Adds one command.
-    pub fn add(&mut self, timing: &Timing) {
-        self.seconds[timing.kind as usize] += timing.seconds - timing.waited_s;
-        self.seconds[Kind::Spindle as usize] += timing.waited_s;
-        self.length_mm[timing.kind as usize] += timing.length_mm;
-    }
-
-    /// Seconds spent on one kind.
-    pub const fn seconds(&self, kind: Kind) -> f64 {
-        self.seconds[kind as usize]
-    }
-
-    /// Length of the path of one kind, mm.
-    pub const fn length_mm(&self, kind: Kind) -> f64 {
-        self.length_mm[kind as usize]
-    }
-
-    /// Seconds in all.
-    pub fn total_s(&self) -> f64 {
-        self.seconds.iter().sum()
-    }
-}
-
 /// Measures commands in order of execution.
 #[derive(Clone, Debug)]
 pub struct Clock {
@@ -121,9 +70,6 @@ pub struct Clock {
     totals: Totals,
     unknown_feeds: u64,
 }
-
-/// A command that would take longer, some 30,000 years, has no known time: sums stay finite.
-const SECONDS_MAX: f64 = 1e12;
 
 /// Seconds and length of a move, before any wait.
 struct Way {
@@ -221,9 +167,16 @@ impl Clock {
                 }
                 self.still(Kind::ToolChange, if turns { self.rates.tool_change_s } else { 0.0 })
             }
-            Action::Coolant(_) | Action::Auxiliary { .. } | Action::SecondAuxiliary { .. } => {
+            Action::Auxiliary { code } => {
+                let seconds = self.rates.auxiliary_times.of(*code).unwrap_or(self.rates.auxiliary_s);
+                self.still(Kind::Other, seconds)
+            }
+            Action::Coolant(_) | Action::SecondAuxiliary { .. } => {
                 self.still(Kind::Other, self.rates.auxiliary_s)
             }
+            Action::Stop => self.still(Kind::Stop, self.rates.stop_s),
+            Action::OptionalStop => self.still(Kind::Stop, self.rates.optional_stop_s),
+            Action::End => self.still(Kind::Loading, self.rates.loading_s),
             Action::Relocate { to, others } => {
                 self.position = *to;
                 if let Some(others) = others {
@@ -235,13 +188,9 @@ impl Clock {
                 self.axes.interpolate(*interpolation);
                 self.still(Kind::Other, 0.0)
             }
-            Action::PathMode(_)
-            | Action::Coupling(_)
-            | Action::Stop
-            | Action::OptionalStop
-            | Action::End
-            | Action::Message(_)
-            | Action::Output(_) => self.still(Kind::Other, 0.0),
+            Action::PathMode(_) | Action::Coupling(_) | Action::Message(_) | Action::Output(_) => {
+                self.still(Kind::Other, 0.0)
+            }
         };
         if timing.kind != Kind::Threading {
             self.thread_rpm = None;

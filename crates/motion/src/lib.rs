@@ -14,6 +14,7 @@
 //! Deliberately not here: text, alarms.
 
 mod axes;
+mod blocks;
 mod clock;
 mod corners;
 mod dynamics;
@@ -32,18 +33,21 @@ mod summary;
 mod surface;
 mod thread;
 mod thread_chain;
+mod totals;
 
-pub use clock::{Clock, Kind, RpmRange, Timing, Totals};
+pub use blocks::{BlockTime, BlockTimes, LINES_MAX, LineTime};
+pub use clock::{Clock, RpmRange, Timing};
 pub use dynamics::{AXIS_COUNT, AxisDynamics, CORNER_S_MAX, Dynamics};
 pub use leg::Place;
 pub use path::ArcPath;
 pub use player::{Panel, Player, Sample};
-pub use rates::{MachineRates, RapidSurfaceSpeed};
+pub use rates::{AuxiliaryTimes, MachineRates, RapidSurfaceSpeed};
 pub use run::LEGS_MAX;
 pub use schedule::Schedule;
 pub use spindle::RPM_FENCE;
 pub use summary::{Extents, OPERATIONS_MAX, Operation, OperationKind, Summary};
 pub use thread::{ShortLeadIn, ThreadFault, ThreadPlan, ThreadStretch, lead_in_needed_mm};
+pub use totals::{Kind, Totals};
 
 /// Relative error of the seconds of lines, circles, threads, rapids and dwells against the model they follow.
 pub const TIME_TOLERANCE: f64 = 1e-9;
@@ -64,8 +68,8 @@ pub const ESTIMATES: &[&str] = &[
     "auxiliary-constant",
     // The wait for the one-turn signal before a thread, half a turn on average, is not counted.
     "thread-start-left-out",
-    // Stops count no time: they last as long as the operator wants.
-    "stops-left-out",
+    // A stop lasts as long as the operator wants; what the machine file says of stops and of a new piece is counted.
+    "stops-and-loading-constant",
 ];
 
 /// As [`ESTIMATES`], when the machine has [`Dynamics`].
@@ -77,5 +81,5 @@ pub const ESTIMATES_WITH_DYNAMICS: &[&str] = &[
     "auxiliary-constant",
     // The start angle of a thread comes round after half a turn.
     "thread-start-half-turn",
-    "stops-left-out",
+    "stops-and-loading-constant",
 ];

@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 use turnwright_canon::{Action, Command, OtherAxes, PathMode, RapidPath};
 use turnwright_units::{Position, WorkTip};
 
-use crate::clock::{Clock, Kind};
+use crate::clock::Clock;
 use crate::leg::{Place, X, Z};
 use crate::orders::leg_limit;
 use crate::planner::{Feedrate, Pace, RunLimits};
@@ -20,6 +20,7 @@ use crate::smoother::Smoother;
 use crate::spindle::SpindleAngle;
 use crate::thread::ThreadPlan;
 use crate::thread_chain::ThreadChain;
+use crate::totals::Kind;
 use crate::{AXIS_COUNT, Dynamics, MachineRates, RapidSurfaceSpeed};
 
 /// What the operator has set. It may change at any tick.

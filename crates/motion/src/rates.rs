@@ -14,6 +14,38 @@ pub enum RapidSurfaceSpeed {
     AtPresentPoint,
 }
 
+/// The times of auxiliary functions that somebody has measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AuxiliaryTimes {
+    /// Code and seconds.
+    times: [(u32, f64); Self::COUNT_MAX],
+    count: usize,
+}
+
+impl AuxiliaryTimes {
+    /// More are not kept.
+    pub const COUNT_MAX: usize = 16;
+
+    /// The times of functions, by code. Those beyond [`Self::COUNT_MAX`] are left out.
+    pub fn new(given: impl IntoIterator<Item = (u32, f64)>) -> Self {
+        let mut times = Self::default();
+        for (place, given) in times.times.iter_mut().zip(given) {
+            *place = given;
+            times.count += 1;
+        }
+        times
+    }
+
+    /// Seconds of a function, if somebody has said so.
+    pub fn of(&self, code: u32) -> Option<f64> {
+        self.times().find(|(of, _)| *of == code).map(|(_, seconds)| seconds)
+    }
+
+    fn times(&self) -> impl Iterator<Item = (u32, f64)> {
+        self.times.into_iter().take(self.count)
+    }
+}
+
 /// The rates of a machine. X rates are those of the slide: millimetres of radius a minute.
 ///
 /// The default is an assumed small production lathe, the same as `data/machines/generic-lathe.toml`; a setup
@@ -40,6 +72,14 @@ pub struct MachineRates {
     pub spindle_ramp_rpm_per_s: f64,
     /// Coolant and other auxiliary functions, seconds each.
     pub auxiliary_s: f64,
+    /// Auxiliary functions that take another time.
+    pub auxiliary_times: AuxiliaryTimes,
+    /// Until the operator presses cycle start after a stop, seconds.
+    pub stop_s: f64,
+    /// The same after an optional stop; 0 while that is switched off.
+    pub optional_stop_s: f64,
+    /// A new piece at the end of the program, seconds: bar feed, loading and unloading.
+    pub loading_s: f64,
     /// The spindle turns no faster.
     pub rpm_max: Option<Rpm>,
     /// The spindle turns no slower while it follows the diameter, rpm.
@@ -63,6 +103,10 @@ impl Default for MachineRates {
             tool_change_s: 1.5,
             spindle_ramp_rpm_per_s: 1_000.0,
             auxiliary_s: 0.2,
+            auxiliary_times: AuxiliaryTimes::default(),
+            stop_s: 0.0,
+            optional_stop_s: 0.0,
+            loading_s: 0.0,
             rpm_max: Some(Rpm(4_000)),
             rpm_min_surface: 20,
             rapid_surface_speed: RapidSurfaceSpeed::AtEndPoint,
@@ -88,6 +132,10 @@ impl MachineRates {
             ("tool_change_s", not_negative(self.tool_change_s)),
             ("spindle_ramp_rpm_per_s", not_negative(self.spindle_ramp_rpm_per_s)),
             ("auxiliary_s", not_negative(self.auxiliary_s)),
+            ("auxiliary_times", self.auxiliary_times.times().all(|(_, seconds)| not_negative(seconds))),
+            ("stop_s", not_negative(self.stop_s)),
+            ("optional_stop_s", not_negative(self.optional_stop_s)),
+            ("loading_s", not_negative(self.loading_s)),
         ]
         .into_iter()
         .find_map(|(key, sound)| (!sound).then_some(key))

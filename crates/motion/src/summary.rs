@@ -8,6 +8,8 @@
 //!
 //! Memory is bounded: operations past [`OPERATIONS_MAX`] are added to the last one.
 
+use std::collections::BTreeMap;
+
 use turnwright_canon::{Action, Command, CycleLabel, Origin, SectionPlace, Shape};
 use turnwright_units::{Length, Position, Radius, WorkTip};
 
@@ -105,8 +107,8 @@ pub struct Operation {
     pub cutting_mm: f64,
     /// Length of rapids, mm.
     pub rapid_mm: f64,
-    /// Seconds in all.
-    pub seconds: f64,
+    /// What its time is spent on.
+    pub times: Totals,
 }
 
 impl Operation {
@@ -122,7 +124,7 @@ impl Operation {
             passes: 0,
             cutting_mm: 0.0,
             rapid_mm: 0.0,
-            seconds: 0.0,
+            times: Totals::default(),
         }
     }
 
@@ -143,6 +145,7 @@ pub struct Summary {
     all: Option<Extents>,
     rpm: Option<RpmRange>,
     totals: Totals,
+    tools: BTreeMap<Option<u32>, Totals>,
     tool: Option<u32>,
     offset: u32,
     /// Cycle of the last move.
@@ -194,6 +197,12 @@ impl Summary {
         &self.totals
     }
 
+    /// Seconds and lengths by tool, in the order of the turret; nothing is named before the first call when only
+    /// rapids or cuts stand there.
+    pub fn tools(&self) -> impl Iterator<Item = (Option<u32>, &Totals)> {
+        self.tools.iter().map(|(tool, totals)| (*tool, totals))
+    }
+
     /// Adds one command.
     pub fn add(&mut self, command: &Command, timing: &Timing) {
         self.totals.add(timing);
@@ -209,7 +218,8 @@ impl Summary {
         }
         let Some(operation) = self.operations.last_mut() else { return };
         operation.add_line(origin);
-        operation.seconds += timing.seconds;
+        operation.times.add(timing);
+        self.tools.entry(operation.tool).or_default().add(timing);
         if let Some(to) = end {
             // The first move names an operation that has only stood so far.
             if operation.kind == OperationKind::Standing {
@@ -228,6 +238,9 @@ impl Summary {
             match self.operations.last_mut() {
                 Some(last) if last.kind == OperationKind::Standing && last.tool.is_none() => {
                     (last.tool, last.offset) = (Some(tool), offset);
+                    if let Some(before) = self.tools.remove(&None) {
+                        self.tools.entry(Some(tool)).or_default().add_all(&before);
+                    }
                 }
                 _ => self.begin(None, origin),
             }
@@ -297,6 +310,8 @@ const fn kind_with(kind: OperationKind, of_move: Kind, on_axis: bool) -> Operati
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use turnwright_canon::{CycleOrigin, Phase, RapidPath, Turn};
     use turnwright_units::{Angle, Feed, FeedPerMinute, Lead};
 
@@ -382,8 +397,15 @@ mod tests {
                 (Some(3), 3, None, OperationKind::Drilling, (14, 16), 1),
             ]
         );
-        let seconds: f64 = summary.operations().iter().map(|operation| operation.seconds).sum();
-        assert!((seconds - summary.totals().total_s()).abs() < 1e-9);
+        let total = summary.totals().total();
+        assert_eq!(
+            summary.operations().iter().map(|operation| operation.times.total()).sum::<Duration>(),
+            total
+        );
+        assert_eq!(summary.tools().map(|(_, times)| times.total()).sum::<Duration>(), total);
+        // What stood before the first call is the first tool's.
+        let tools: Vec<_> = summary.tools().map(|(tool, _)| tool).collect();
+        assert_eq!(tools, [Some(1), Some(2), Some(3)]);
     }
 
     #[test]

@@ -1,14 +1,15 @@
 //! Laws on seeded random moves: the closed forms against an integration that knows nothing of them.
 
 use std::f64::consts::{PI, TAU};
+use std::time::Duration;
 
 use turnwright_canon::{
     Action, Command, Curve, Dwell, Interpolation, Origin, OtherAxes, RapidPath, Shape, SidePlane, SidePoint,
     SpindleSpeed, SpindleState, Turn,
 };
 use turnwright_motion::{
-    ArcPath, Clock, Dynamics, MachineRates, RapidSurfaceSpeed, SPIRAL_TOLERANCE, Schedule, Summary,
-    TIME_TOLERANCE, Timing,
+    ArcPath, AuxiliaryTimes, BlockTime, BlockTimes, Clock, Dynamics, Kind, LINES_MAX, MachineRates,
+    RapidSurfaceSpeed, SPIRAL_TOLERANCE, Schedule, Summary, TIME_TOLERANCE, Timing,
 };
 use turnwright_units::{
     Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position, Radius, Revolutions, Rpm, Seconds,
@@ -320,6 +321,10 @@ fn any_action(random: &mut Random) -> Action {
         },
         5 if random.chance(2) => Action::Dwell(Dwell::Time(Seconds(number(random)))),
         5 => Action::Dwell(Dwell::Turns(Revolutions(number(random)))),
+        6 if random.chance(4) => Action::Auxiliary { code: 10 },
+        6 if random.chance(4) => {
+            [Action::Stop, Action::OptionalStop, Action::End][random.next() as usize % 3].clone()
+        }
         6 if random.chance(3) => {
             let radius = Radius(any_length(random));
             Action::Interpolation(Interpolation::Cylindrical { radius })
@@ -360,6 +365,10 @@ fn nothing_makes_a_time_that_is_no_number() {
             tool_change_s: rate(),
             spindle_ramp_rpm_per_s: rate(),
             auxiliary_s: rate(),
+            auxiliary_times: AuxiliaryTimes::new((0..20).map(|code| (code, rate()))),
+            stop_s: rate(),
+            optional_stop_s: rate(),
+            loading_s: rate(),
             rpm_max: None,
             rpm_min_surface: 0,
             rapid_surface_speed: RapidSurfaceSpeed::AtPresentPoint,
@@ -398,6 +407,68 @@ fn with_acceleration_too_every_command_gets_a_time() {
         }
         assert_eq!(timed, 50);
     }
+}
+
+#[test]
+fn causes_blocks_lines_operations_and_tools_add_up_to_the_same_time() {
+    let mut random = Random(0x1dea_0009);
+    for round in 0..100 {
+        let rates = MachineRates {
+            dynamics: random.chance(2).then(Dynamics::default),
+            auxiliary_times: AuxiliaryTimes::new([(10, 2.5)]),
+            stop_s: 30.0,
+            loading_s: 12.0,
+            ..MachineRates::default()
+        };
+        let mut schedule = Schedule::new(at(10.0, 10.0), rates);
+        let (mut line, mut commands) = (1, 0);
+        for _ in 0..200 {
+            // Some lines make several commands, some run again.
+            line = if random.chance(3) { line } else { 1 + (random.next() % 30) as u32 };
+            schedule.push(Command::new(any_action(&mut random), Origin::line(line)));
+        }
+        schedule.finish();
+        let (mut summary, mut blocks) = (Summary::new(), BlockTimes::default());
+        let (mut of_blocks, mut of_commands, mut ends) = (Duration::ZERO, Duration::ZERO, Duration::ZERO);
+        let mut sum_up = |block: BlockTime| {
+            assert_eq!(block.start, of_blocks, "{round}");
+            of_blocks += block.times.total();
+        };
+        while let Some((command, timing)) = schedule.next_known() {
+            summary.add(&command, &timing);
+            let operation = summary.operations().len();
+            blocks.add(&command, &timing, operation, None).into_iter().for_each(&mut sum_up);
+            of_commands += timing.time();
+            commands += 1;
+        }
+        blocks.finish().into_iter().for_each(&mut sum_up);
+        let totals = summary.totals();
+        ends += blocks.lines().map(|(.., line)| line.time).sum::<Duration>() + blocks.rest().time;
+        let of_kinds: Duration = Kind::ALL.iter().map(|kind| totals.time(*kind)).sum();
+        let of_operations: Duration = summary.operations().iter().map(|one| one.times.total()).sum();
+        let of_tools: Duration = summary.tools().map(|(_, times)| times.total()).sum();
+        for sum in [of_blocks, of_commands, ends, of_kinds, of_operations, of_tools] {
+            assert_eq!(sum, totals.total(), "{round}");
+        }
+        assert_eq!(commands, 200);
+        assert!(totals.total() > Duration::ZERO);
+    }
+}
+
+#[test]
+fn lines_beyond_what_is_kept_are_summed() {
+    let mut blocks = BlockTimes::default();
+    let mut clock = Clock::new(at(10.0, 10.0), MachineRates::default());
+    let dwell = Action::Dwell(Dwell::Time(Seconds(0.5)));
+    for line in 1..=LINES_MAX as u32 + 3 {
+        let command = Command::new(dwell.clone(), Origin::line(line));
+        let timing = clock.advance(&command);
+        blocks.add(&command, &timing, 1, None);
+    }
+    blocks.finish();
+    assert_eq!(blocks.lines().count(), LINES_MAX);
+    assert_eq!((blocks.rest().runs, blocks.rest().time), (3, Duration::from_millis(1500)));
+    assert_eq!(blocks.longest(2).len(), 2);
 }
 
 #[test]

@@ -17,7 +17,7 @@ use turnwright_control::{Setup, SetupFault};
 use turnwright_diagnostics::{Diagnostic, Place, Severity, SourceId};
 use turnwright_geometry::{Outline, Point};
 use turnwright_stock::machining::{Event, EventKind, Obstacle, RapidRates, ThreadMark, ToolShape};
-use turnwright_stock::{Contact, Machining, Section};
+use turnwright_stock::{Contact, Machining, Removed, Section};
 use turnwright_units::{Position, WorkTip};
 
 /// Moves that are cut out of the stock.
@@ -115,10 +115,10 @@ impl PartRun {
         Ok(Some(Self { machining, stock, moves: 0, commands: 0, is_full: false, notebook }))
     }
 
-    /// Cuts a command out of the stock.
-    pub fn add(&mut self, command: &Command) {
+    /// Cuts a command out of the stock; what it took away, unless nothing more is cut.
+    pub fn add(&mut self, command: &Command) -> Option<Removed> {
         if self.is_full {
-            return;
+            return None;
         }
         match command.action {
             Action::Rapid { .. } | Action::Feed { .. } | Action::Thread { .. } => self.moves += 1,
@@ -126,7 +126,7 @@ impl PartRun {
             _ => {}
         }
         let Self { machining, notebook, .. } = self;
-        machining.advance(command, &mut |event| notebook.tell(&event));
+        let removed = machining.advance(command, &mut |event| notebook.tell(&event));
         self.commands += 1;
         if self.commands.is_multiple_of(COMMANDS_PER_LOOK)
             && (self.moves >= PART_MOVES_MAX || self.machining.section().slab_count() > SLABS_MAX)
@@ -135,6 +135,7 @@ impl PartRun {
             let note = Diagnostic::new(Severity::Note, "part-incomplete");
             self.notebook.findings.push(note.at(place_of(&command.origin)));
         }
+        Some(removed)
     }
 
     /// Whether nothing more is cut, because there was too much of it.

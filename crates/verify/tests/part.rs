@@ -21,7 +21,9 @@ fn part(text: &str, control: &str, given: &Setup) -> Part {
     run.commands.iter().for_each(|command| inference.add(command));
     let setup = inference.finish(given).setup;
     let mut part = PartRun::new(&setup, given, run.start, RATES).expect("a setup").expect("a stock");
-    run.commands.iter().for_each(|command| part.add(command));
+    for command in &run.commands {
+        part.add(command);
+    }
     assert!(!part.is_full());
     part.finish()
 }

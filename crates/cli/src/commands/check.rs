@@ -32,7 +32,7 @@ const DEPTH_MAX: u32 = 64;
 const EXTENSIONS: [&str; 9] = ["nc", "cnc", "tap", "txt", "mpf", "ngc", "min", "prg", "iso"];
 
 /// A program to be checked, or why it cannot be.
-type Candidate = Result<PathBuf, Finding>;
+pub(super) type Candidate = Result<PathBuf, Finding>;
 
 /// What was found in one program, already in words.
 #[derive(Debug, Default)]
@@ -91,13 +91,13 @@ impl Count {
     }
 }
 
-/// Checks everything that was named.
-pub(crate) fn run(options: &Check, printer: &Printer) -> Result<Status, Fault> {
+/// The programs that were named, those of folders in the order of their names.
+pub(super) fn candidates(named: &[PathBuf], speech: Speech) -> Vec<Candidate> {
     let mut candidates = Vec::new();
-    for path in &options.files {
+    for path in named {
         if path.as_os_str() != STANDARD_INPUT && path.is_dir() {
             let before = candidates.len();
-            gather(path, 0, &mut candidates, printer.speech);
+            gather(path, 0, &mut candidates, speech);
             if candidates.len() == before {
                 // A folder without programs is a mistyped folder, not a clean one.
                 let empty = Diagnostic::error("folder-without-programs");
@@ -107,6 +107,12 @@ pub(crate) fn run(options: &Check, printer: &Printer) -> Result<Status, Fault> {
             candidates.push(Ok(path.clone()));
         }
     }
+    candidates
+}
+
+/// Checks everything that was named.
+pub(crate) fn run(options: &Check, printer: &Printer) -> Result<Status, Fault> {
+    let candidates = candidates(&options.files, printer.speech);
     let mut count = Count::default();
     let mut results = Vec::new();
     let mut out = io::stdout().lock();
@@ -187,8 +193,9 @@ fn find(text: &ProgramText, options: &Check, printer: &Printer) -> Vec<Finding> 
             checks.add(&command);
         }
         let checked = checks.finish(&session.setup);
-        let part = part::machined(text, &session, &options.machine, &checked.inferred.setup);
-        let of_part = part.into_iter().flat_map(|part| part.findings);
+        let setup = &checked.inferred.setup;
+        let part = part::machined(text, &session, &options.machine, setup, None, &mut |_, _| Ok(()));
+        let of_part = part.ok().flatten().into_iter().flat_map(|part| part.findings);
         checked.findings.into_iter().chain(of_part).for_each(|finding| execution.warn(finding));
     }
     let mut findings = execution.findings();

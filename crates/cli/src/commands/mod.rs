@@ -10,6 +10,7 @@ mod passes;
 mod plot;
 mod run;
 mod setup;
+mod time;
 mod trace;
 
 use crate::arguments::{Arguments, Command, Format, LookupFormat};
@@ -24,6 +25,7 @@ pub(crate) fn run(arguments: &Arguments, printer: &Printer) -> Result<Status, Fa
         Command::Trace(options) => trace::run(options, printer),
         Command::Plot(options) => plot::run(options, printer),
         Command::Motion(options) => motion::run(options, printer),
+        Command::Time(options) => time::run(options, printer),
         Command::Explain(options) => explain::run(options, printer),
         Command::Controls(options) => controls::run(options, printer),
         Command::Data(options) => data::run(options, printer),
@@ -42,6 +44,7 @@ pub(crate) fn format(arguments: &Arguments) -> Format {
         Command::Plot(options) => options.format,
         Command::Setup(options) => options.format,
         Command::Explain(options) => lookup(options.format),
+        Command::Time(options) => lookup(options.format),
         Command::Controls(options) => lookup(options.format),
         Command::Data(options) => lookup(options.format),
         Command::Trace(_) | Command::Motion(_) | Command::Completions(_) | Command::Man(_) => Format::Human,

@@ -6,7 +6,7 @@
 use std::io::{self, Write};
 
 use turnwright_canon::{Action, Interpolation};
-use turnwright_motion::{Kind, Player, Sample};
+use turnwright_motion::{Player, Sample};
 use turnwright_units::write_fixed;
 
 use super::trace::BUFFER_BYTES;
@@ -27,7 +27,7 @@ pub(crate) fn run(options: &Motion, printer: &Printer) -> Result<Status, Fault> 
     let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
     let machine = machine.limited_by(&session.control.parameters);
     let mut execution = Execution::new(&text, &session, &options.machine)?;
-    let rates = rates(&machine, &session.control.parameters);
+    let rates = rates(&machine, &session.control.parameters, options.machine.optional_stop);
     let mut player = Player::new(execution.interpreter().position(), rates, f64::from(options.rate));
     let mut target = match &options.output {
         Some(path) if path.as_os_str() != "-" => Target::File(WholeFile::create(path, speech)?),
@@ -117,7 +117,7 @@ impl Table {
         self.column(sample.path_mm_per_s, 4);
         self.column(sample.rpm, 2);
         self.column(sample.turns, 6);
-        let kind = word(sample.kind);
+        let kind = sample.kind.word();
         // Writing to memory does not fail.
         let _ = writeln!(self.buffer, ",{kind},{}", sample.line);
     }
@@ -130,17 +130,5 @@ impl Table {
     fn number(&mut self, value: f64, decimals: u8) {
         let scale = 10f64.powi(i32::from(decimals));
         write_fixed(&mut self.buffer, (value * scale).round() as i64, decimals);
-    }
-}
-
-const fn word(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Rapid => "rapid",
-        Kind::Cutting => "cutting",
-        Kind::Threading => "threading",
-        Kind::Dwell => "dwell",
-        Kind::ToolChange => "tool-change",
-        Kind::Spindle => "spindle",
-        Kind::Other => "other",
     }
 }

@@ -20,8 +20,9 @@ use crate::environment::ProgramText;
 use crate::execution::Execution;
 use crate::fault::{Fault, Status};
 use crate::passes::{Passes, cause_text, setting_name, source_of};
+use crate::rates::rates;
 use crate::render::{Printer, clean};
-use crate::report::{Measure, picture_language};
+use crate::report::{Kept, Measure, picture_language};
 use crate::session::Session;
 use crate::speech::Speech;
 use crate::table::{Side, Table, facts, heading};
@@ -88,15 +89,15 @@ fn draw(
     title: String,
     speech: Speech,
 ) -> Result<(), Fault> {
-    let parameters = execution.interpreter().parameters();
-    let mut drawn = Measure::new(cycle.start, machine, &parameters, true);
+    let rates = rates(machine, &execution.interpreter().parameters(), false);
+    let mut drawn = Measure::new(cycle.start, rates, Kept { path: true, ..Kept::default() });
     let Range { start, end } = cycle.commands;
     let line = |command: &Command| command.origin.line;
     let is_of_pass = |command: &Command| cycle.passes.iter().any(|pass| pass.line == line(command));
     for index in 0..end {
         let Some(command) = execution.next_command() else { break };
         if index >= start && is_of_pass(&command) {
-            drawn.add(command);
+            drawn.add(command, None);
         }
     }
     drawn.finish();

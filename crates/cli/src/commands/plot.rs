@@ -13,8 +13,9 @@ use crate::execution::Execution;
 use crate::fault::{Fault, Status};
 use crate::finding::Finding;
 use crate::output::{WholeFile, sarif};
+use crate::rates::rates;
 use crate::render::Printer;
-use crate::report::{Measure, picture_language};
+use crate::report::{Kept, Measure, picture_language};
 use crate::session::Session;
 use crate::speech::Speech;
 
@@ -29,10 +30,11 @@ pub(crate) fn run(options: &Plot, printer: &Printer) -> Result<Status, Fault> {
     let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
     let machine = machine.limited_by(&session.control.parameters);
     let mut execution = Execution::new(&text, &session, &options.machine)?;
-    let mut measure =
-        Measure::new(execution.interpreter().position(), &machine, &session.control.parameters, true);
+    let rates = rates(&machine, &session.control.parameters, options.machine.optional_stop);
+    let kept = Kept { path: true, ..Kept::default() };
+    let mut measure = Measure::new(execution.interpreter().position(), rates, kept);
     while let Some(command) = execution.next_command() {
-        measure.add(command);
+        measure.add(command, None);
     }
     measure.finish();
     let Some(path) = measure.path else { return Ok(Status::Failed) };

@@ -4,19 +4,18 @@
 //! trace. What happened before an alarm is reported all the same.
 
 use std::fs;
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
 use turnwright_export::formats::jsonl;
 use turnwright_export::formats::part_svg::{PartDrawing, write_part_svg};
 use turnwright_export::formats::svg::{PictureOptions, write_svg};
+use turnwright_export::formats::time_svg::{TimePicture, write_time_svg};
 use turnwright_verify::Checks;
 
 use super::plot::paint;
 use super::trace::{BUFFER_BYTES, write_alarm, write_json};
-use crate::arguments::{Colour, Format, Run};
+use crate::arguments::{Format, Run};
 use crate::environment::ProgramText;
 use crate::execution::Execution;
 use crate::fault::{Fault, Status, unwritable};
@@ -24,16 +23,12 @@ use crate::finding::Finding;
 use crate::output::{WholeFile, sarif};
 use crate::part;
 use crate::passes::Passes;
+use crate::progress::Progress;
+use crate::rates::rates;
 use crate::render::Printer;
-use crate::report::{Measure, RunReport, picture_language};
+use crate::report::{Kept, Measure, RunReport, picture_language};
 use crate::session::Session;
 use crate::speech::Speech;
-
-/// Shorter runs show no progress.
-const PATIENCE: Duration = Duration::from_secs(1);
-
-/// Commands between two looks at the time.
-const COMMANDS_PER_LOOK: u32 = 16 * 1024;
 
 /// Runs the program and reports.
 pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
@@ -43,12 +38,10 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
     let machine = machine.limited_by(&session.control.parameters);
     let mut execution = Execution::new(&text, &session, &options.machine)?;
-    let mut measure = Measure::new(
-        execution.interpreter().position(),
-        &machine,
-        &session.control.parameters,
-        options.out.is_some(),
-    );
+    let rates = rates(&machine, &session.control.parameters, options.machine.optional_stop);
+    let writes = options.out.is_some();
+    let kept = Kept { path: writes, timeline: writes, table: writes };
+    let mut measure = Measure::new(execution.interpreter().position(), rates, kept);
     let mut folder =
         options.out.as_deref().map(|folder| OutFolder::create(folder, &session, speech)).transpose()?;
 
@@ -65,16 +58,22 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         if let Some(passes) = &mut passes {
             passes.add(&command, &execution);
         }
-        measure.add(command);
-        progress.look(&execution);
+        progress.look(execution.interpreter());
     }
-    measure.finish();
-    measure.warnings().for_each(|warning| execution.warn(warning));
     progress.finish();
 
     let checked = checks.finish(&session.setup);
     checked.findings.into_iter().for_each(|warning| execution.warn(warning));
-    let mut part = part::machined(&text, &session, &options.machine, &checked.inferred.setup);
+    // The second run cuts the part and takes the time: what a move removes tells where time is lost.
+    let mut progress = Progress::new(&text, printer);
+    let mut look = |again: &Execution<'_>, measure: &mut Measure| {
+        progress.look(again.interpreter());
+        folder.as_mut().map_or(Ok(()), |folder| folder.pour_table(measure, BUFFER_BYTES))
+    };
+    let (setup, asked) = (&checked.inferred.setup, &options.machine);
+    let mut part = part::machined(&text, &session, asked, setup, Some(&mut measure), &mut look)?;
+    progress.finish();
+    measure.warnings().for_each(|warning| execution.warn(warning));
     if let Some(part) = &mut part {
         part.findings.drain(..).for_each(|finding| execution.warn(finding));
     }
@@ -130,6 +129,7 @@ fn say(report: &RunReport, text: &ProgramText, format: Format, printer: &Printer
 struct OutFolder {
     folder: PathBuf,
     trace: WholeFile,
+    times: WholeFile,
     buffer: Vec<u8>,
 }
 
@@ -138,9 +138,10 @@ impl OutFolder {
         fs::create_dir_all(folder)
             .map_err(|error| unwritable(&folder.display().to_string(), &error, speech))?;
         let trace = WholeFile::create(&folder.join("trace.jsonl"), speech)?;
+        let times = WholeFile::create(&folder.join("times.csv"), speech)?;
         let mut buffer = Vec::with_capacity(BUFFER_BYTES + 4096);
         jsonl::write_header(&mut buffer, &jsonl::TraceHeader { control: session.control.name });
-        Ok(Self { folder: folder.to_path_buf(), trace, buffer })
+        Ok(Self { folder: folder.to_path_buf(), trace, times, buffer })
     }
 
     /// Empties the buffer when it holds that many bytes.
@@ -153,6 +154,15 @@ impl OutFolder {
         Ok(())
     }
 
+    /// Writes the table of times when it holds that many bytes.
+    fn pour_table(&mut self, measure: &mut Measure, bytes: usize) -> Result<(), Finding> {
+        if let Some(table) = measure.table.as_mut().filter(|table| table.len() >= bytes) {
+            self.times.append(table)?;
+            table.clear();
+        }
+        Ok(())
+    }
+
     /// Completes the trace and writes the page and the pictures.
     fn finish(
         mut self,
@@ -161,7 +171,8 @@ impl OutFolder {
         printer: &Printer,
     ) -> Result<(), Finding> {
         self.pour(0)?;
-        let Self { folder, trace, .. } = self;
+        self.pour_table(&mut report.measure, 0)?;
+        let Self { folder, trace, times, .. } = self;
         let Some(path) = report.measure.path.take() else { return Ok(()) };
         let language = printer.speech.language;
         let page = report.page(text, &path, printer.speech);
@@ -176,7 +187,13 @@ impl OutFolder {
         WholeFile::write(&folder.join("report.html"), page.as_bytes(), printer.speech)?;
         WholeFile::write(&folder.join("path.svg"), picture.as_bytes(), printer.speech)?;
         WholeFile::write(&folder.join("path.png"), &png, printer.speech)?;
-        let mut names = vec!["report.html", "path.svg", "path.png", "trace.jsonl"];
+        let mut names = vec!["report.html", "path.svg", "path.png", "trace.jsonl", "times.csv"];
+        if let Some(timeline) = &report.measure.timeline {
+            let picture = TimePicture { title: report.title(), language: picture_language(language) };
+            let drawn = write_time_svg(timeline, &picture);
+            WholeFile::write(&folder.join("time.svg"), drawn.as_bytes(), printer.speech)?;
+            names.push("time.svg");
+        }
         if let Some((part, shape)) = &report.part {
             let drawing = PartDrawing {
                 shape,
@@ -188,49 +205,8 @@ impl OutFolder {
             names.push("part.svg");
         }
         trace.finish()?;
+        times.finish()?;
         report.written = names.iter().map(|name| folder.join(name).display().to_string()).collect();
         Ok(())
-    }
-}
-
-/// A bar on the terminal, for runs that take long.
-struct Progress {
-    started: Instant,
-    commands: u32,
-    bytes: u64,
-    is_wanted: bool,
-    bar: Option<ProgressBar>,
-}
-
-impl Progress {
-    fn new(text: &ProgramText, printer: &Printer) -> Self {
-        let is_wanted = std::io::stderr().is_terminal() && printer.colour() != Colour::Never;
-        Self { started: Instant::now(), commands: 0, bytes: text.len(), is_wanted, bar: None }
-    }
-
-    #[inline]
-    fn look(&mut self, execution: &Execution<'_>) {
-        self.commands += 1;
-        if self.commands == COMMANDS_PER_LOOK {
-            self.commands = 0;
-            self.show(execution);
-        }
-    }
-
-    fn show(&mut self, execution: &Execution<'_>) {
-        if !self.is_wanted || self.started.elapsed() < PATIENCE {
-            return;
-        }
-        let bar = self.bar.get_or_insert_with(|| {
-            let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {elapsed}");
-            ProgressBar::new(self.bytes).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
-        });
-        bar.set_position(execution.interpreter().offset());
-    }
-
-    fn finish(self) {
-        if let Some(bar) = self.bar {
-            bar.finish_and_clear();
-        }
     }
 }

@@ -3,7 +3,8 @@
 use turnwright_export::formats::part_svg::{mm, thread_text};
 use turnwright_export::part::PartShape;
 
-use super::{RunReport, TIME_PARTS, assumption_text, estimates, operation_name};
+use super::times::parts_text;
+use super::{RunReport, assumption_text, estimates, operation_name};
 use crate::render::clean;
 use crate::speech::Speech;
 use crate::table::{Side, Table, facts, heading};
@@ -26,17 +27,27 @@ impl RunReport {
 
     /// Operations, extents, speeds and time.
     pub(crate) fn body(&self, speech: Speech) -> String {
-        let mut out = String::new();
-        if let Some(line) = self.stopped_at {
-            out.push_str(&speech.fill("stopped-at", &[("line", &line.to_string())]));
-            out.push_str("\n\n");
-        }
+        let mut out = self.stopped_text(speech);
         if !self.measure.summary.operations().is_empty() {
             out.push_str(&self.operations(speech));
             out.push('\n');
         }
         out.push_str(&facts(&self.figures(speech)));
         out.push('\n');
+        out.push_str(&self.measure.times_text(speech));
+        out.push_str(&self.endnotes(speech));
+        out
+    }
+
+    /// Where an alarm ended the program.
+    pub(super) fn stopped_text(&self, speech: Speech) -> String {
+        let line = self.stopped_at.map(|line| line.to_string());
+        line.map_or(String::new(), |line| speech.fill("stopped-at", &[("line", &line)]) + "\n\n")
+    }
+
+    /// What the figures rest on, and what was written.
+    pub(super) fn endnotes(&self, speech: Speech) -> String {
+        let mut out = String::new();
         out.push_str(&heading(speech.get("estimated")));
         out.push('\n');
         for (_, sentence) in estimates(&self.measure, speech) {
@@ -57,7 +68,7 @@ impl RunReport {
         out
     }
 
-    fn operations(&self, speech: Speech) -> String {
+    pub(super) fn operations(&self, speech: Speech) -> String {
         use Side::{Left, Right};
         let mut table = Table::new(&[Right, Right, Left, Left, Right, Right, Right, Right, Right]);
         let columns =
@@ -77,7 +88,7 @@ impl RunReport {
                 if operation.passes > 0 { operation.passes.to_string() } else { String::new() },
                 format!("{:.1}", operation.cutting_mm),
                 format!("{:.1}", operation.rapid_mm),
-                speech.duration(operation.seconds),
+                speech.duration(operation.times.total_s()),
             ]);
         }
         let mut out = table.text(0, true);
@@ -108,20 +119,10 @@ impl RunReport {
             rows.push((label("spindle"), rpm_text(rpm.min, rpm.max)));
         }
         let totals = self.measure.summary.totals();
-        let parts: Vec<String> = TIME_PARTS
-            .iter()
-            .filter(|(kind, _)| totals.seconds(*kind) > 0.0)
-            .map(|(kind, name)| {
-                format!(
-                    "{} {}",
-                    speech.find(&format!("time-of-{name}")),
-                    speech.duration(totals.seconds(*kind))
-                )
-            })
-            .collect();
         let mut time = speech.duration(totals.total_s());
+        let parts = parts_text(totals, speech);
         if !parts.is_empty() {
-            time = format!("{time}\n{}", parts.join(speech.get("list-comma")));
+            time = format!("{time}\n{parts}");
         }
         if self.measure.schedule.unknown_feeds() > 0 {
             let count = self.measure.schedule.unknown_feeds().to_string();

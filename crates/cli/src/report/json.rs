@@ -3,7 +3,8 @@
 use serde_json::{Value, json};
 use turnwright_motion::OperationKind;
 
-use super::{RunReport, TIME_PARTS, assumption_text, estimates, operation_name};
+use super::times::totals_json;
+use super::{RunReport, assumption_text, estimates, operation_name};
 use crate::environment::ProgramText;
 use crate::speech::Speech;
 
@@ -17,8 +18,6 @@ impl RunReport {
                 finding.to_json(speech.messages(), speech.language, finding.spot(Some(text)).as_ref())
             })
             .collect();
-        let estimates: Vec<Value> =
-            estimates(&self.measure, speech).map(|(key, text)| json!({ "key": key, "text": text })).collect();
         json!({
             "turnwright": "run",
             "version": 1,
@@ -34,8 +33,8 @@ impl RunReport {
             "cutting_extents": self.extents_json(),
             "part": self.part_json(),
             "spindle_rpm": self.measure.summary.rpm().map(|rpm| json!({ "min": rpm.min, "max": rpm.max })),
-            "time": self.time_json(),
-            "estimates": estimates,
+            "time": self.measure.time_json(),
+            "estimates": self.estimates_json(speech),
             "assumptions": self.assumptions_json(speech),
             "files": self.written,
         })
@@ -56,7 +55,11 @@ impl RunReport {
             .collect()
     }
 
-    fn operations_json(&self, speech: Speech) -> Vec<Value> {
+    pub(super) fn estimates_json(&self, speech: Speech) -> Vec<Value> {
+        estimates(&self.measure, speech).map(|(key, text)| json!({ "key": key, "text": text })).collect()
+    }
+
+    pub(super) fn operations_json(&self, speech: Speech) -> Vec<Value> {
         let operations = self.measure.summary.operations().iter().enumerate();
         operations
             .map(|(index, operation)| {
@@ -72,7 +75,8 @@ impl RunReport {
                     "passes": operation.passes,
                     "cutting_mm": operation.cutting_mm,
                     "rapid_mm": operation.rapid_mm,
-                    "seconds": operation.seconds,
+                    "seconds": operation.times.total_s(),
+                    "time": totals_json(&operation.times),
                 })
             })
             .collect()
@@ -109,18 +113,6 @@ impl RunReport {
             "cylinders": cylinders.collect::<Vec<_>>(),
             "threads": threads.collect::<Vec<_>>(),
         })
-    }
-
-    fn time_json(&self) -> Value {
-        let totals = self.measure.summary.totals();
-        let mut time = json!({
-            "total_s": totals.total_s(),
-            "moves_of_unknown_time": self.measure.schedule.unknown_feeds(),
-        });
-        for (kind, name) in TIME_PARTS {
-            time[format!("{name}_s")] = json!(totals.seconds(kind));
-        }
-        time
     }
 }
 

@@ -3,22 +3,27 @@
 mod human;
 mod json;
 mod page;
+mod times;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
-use turnwright_canon::Command;
-use turnwright_control::{CodeSystem, Control, Language, Machine, Parameters};
+use turnwright_canon::{Action, Command};
+use turnwright_control::{CodeSystem, Control, Language, Machine};
 use turnwright_diagnostics::{Argument, Diagnostic, Place, SourceId};
+use turnwright_export::formats::times_csv::{write_times_head, write_times_row};
 use turnwright_export::part::PartShape;
 use turnwright_export::passes::Cycle;
 use turnwright_export::path::PathRecorder;
-use turnwright_motion::{Dynamics, Kind, Operation, OperationKind, Schedule, ShortLeadIn, Summary};
+use turnwright_export::timeline::Timeline;
+use turnwright_motion::{
+    BlockTimes, Dynamics, Kind, MachineRates, Operation, OperationKind, Schedule, ShortLeadIn, Summary,
+};
 use turnwright_units::{Length, Position, WorkTip, write_millimetres};
 use turnwright_verify::Assumption;
 use turnwright_verify::part::Part;
 
+pub(crate) use self::times::totals_json;
 use crate::finding::Finding;
-use crate::rates::rates;
 use crate::session::Session;
 use crate::speech::Speech;
 
@@ -29,36 +34,55 @@ pub(crate) struct Measure {
     pub(crate) schedule: Schedule,
     /// Operations and extents.
     pub(crate) summary: Summary,
+    /// Seconds by block and line.
+    pub(crate) blocks: BlockTimes,
     /// The path, for pictures.
     pub(crate) path: Option<PathRecorder>,
+    /// Places and speeds over time, for pictures.
+    pub(crate) timeline: Option<Timeline>,
+    /// The table of times as far as it has not been written.
+    pub(crate) table: Option<Vec<u8>>,
     /// Threads that start too close to the work, once a line.
     pub(crate) short_lead_ins: BTreeMap<(u32, u32), ShortLeadIn>,
+    /// What the commands whose time is not known yet took away, mm³.
+    removed_mm3: VecDeque<Option<f64>>,
     dynamics: Option<Dynamics>,
+}
+
+/// What is kept of a program besides its sums.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Kept {
+    /// The path.
+    pub(crate) path: bool,
+    /// The picture over time.
+    pub(crate) timeline: bool,
+    /// The table of times.
+    pub(crate) table: bool,
 }
 
 impl Measure {
     /// Nothing yet, the tool at `start`.
-    pub(crate) fn new(
-        start: Position<WorkTip>,
-        machine: &Machine,
-        parameters: &Parameters,
-        keeps_path: bool,
-    ) -> Self {
-        let rates = rates(machine, parameters);
-        let path =
-            keeps_path.then(|| PathRecorder::new(start, rates.rapid_x_mm_per_min, rates.rapid_z_mm_per_min));
+    pub(crate) fn new(start: Position<WorkTip>, rates: MachineRates, kept: Kept) -> Self {
+        let (rapid_x, rapid_z) = (rates.rapid_x_mm_per_min, rates.rapid_z_mm_per_min);
+        let mut table = Vec::new();
+        write_times_head(&mut table);
         Self {
             schedule: Schedule::new(start, rates),
             summary: Summary::new(),
-            path,
+            blocks: BlockTimes::default(),
+            path: kept.path.then(|| PathRecorder::new(start, rapid_x, rapid_z)),
+            timeline: kept.timeline.then(Timeline::default),
+            table: kept.table.then_some(table),
             short_lead_ins: BTreeMap::new(),
+            removed_mm3: VecDeque::new(),
             dynamics: rates.dynamics,
         }
     }
 
-    /// Adds a command.
+    /// Adds a command and what it took away, mm³, when anybody knows.
     #[inline]
-    pub(crate) fn add(&mut self, command: Command) {
+    pub(crate) fn add(&mut self, command: Command, removed_mm3: Option<f64>) {
+        self.removed_mm3.push_back(removed_mm3);
         self.schedule.push(command);
         self.take();
     }
@@ -67,6 +91,9 @@ impl Measure {
     pub(crate) fn finish(&mut self) {
         self.schedule.finish();
         self.take();
+        if let (Some(block), Some(table)) = (self.blocks.finish(), &mut self.table) {
+            write_times_row(table, &block);
+        }
     }
 
     /// What was found about the commands.
@@ -84,7 +111,21 @@ impl Measure {
     /// Takes the commands whose time is known.
     fn take(&mut self) {
         while let Some((command, timing)) = self.schedule.next_known() {
+            let removed_mm3 = self.removed_mm3.pop_front().flatten();
+            if let Some(timeline) = &mut self.timeline {
+                if let Action::Tool { tool, .. } = command.action {
+                    timeline.call_tool(tool);
+                }
+                timeline.add(&timing, command.action.end_point().unwrap_or(timing.from), removed_mm3);
+            }
             self.summary.add(&command, &timing);
+            let operations = self.summary.operations();
+            let tool = operations.last().and_then(|operation| operation.tool);
+            if let (Some(block), Some(table)) =
+                (self.blocks.add(&command, &timing, operations.len(), tool), &mut self.table)
+            {
+                write_times_row(table, &block);
+            }
             if let Some(dynamics) = &self.dynamics
                 && let Some(short) = ShortLeadIn::of(&command, &timing, dynamics)
             {
@@ -128,13 +169,16 @@ pub(crate) struct RunReport {
 }
 
 /// The parts that the time is split into, and the keys of their names.
-const TIME_PARTS: [(Kind, &str); 7] = [
+pub(crate) const TIME_PARTS: [(Kind, &str); Kind::ALL.len()] = [
     (Kind::Cutting, "cutting"),
     (Kind::Threading, "threading"),
     (Kind::Rapid, "rapid"),
     (Kind::Dwell, "dwell"),
     (Kind::ToolChange, "tool_change"),
     (Kind::Spindle, "spindle"),
+    (Kind::SpindleWait, "spindle_wait"),
+    (Kind::Stop, "stop"),
+    (Kind::Loading, "loading"),
     (Kind::Other, "other"),
 ];
 

@@ -89,7 +89,7 @@ impl RunReport {
                     passes: operation.passes,
                     cutting_mm: operation.cutting_mm,
                     rapid_mm: operation.rapid_mm,
-                    seconds: operation.seconds,
+                    seconds: operation.times.total_s(),
                 }
             })
             .collect()
