@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use turnwright_control::SectionSpot;
 
 use crate::speech::Speech;
 
@@ -64,6 +65,7 @@ pub(crate) enum Command {
     Plot(Plot),
     Motion(Motion),
     Time(Time),
+    Measure(Measure),
     Explain(Explain),
     Controls(Controls),
     Data(Data),
@@ -254,6 +256,25 @@ pub(crate) struct Time {
     pub(crate) machine: Machine,
 }
 
+/// Measures the part that a program cuts.
+///
+/// Without --at all its sizes are listed: diameters, bores, tapers, radii, faces, grooves, threads, volume, and mass where
+/// the setup names the material. Sizes that the setup file gives with [[measure]] are judged by their tolerance.
+#[derive(Debug, Args)]
+#[command(after_long_help = examples("measure"))]
+pub(crate) struct Measure {
+    /// The program; - for standard input
+    pub(crate) file: PathBuf,
+    /// Where to measure: Z-32 for diameters and wall, X25 for lengths and widths at a diameter; may be repeated
+    #[arg(long, value_name = "PLACE", value_parser = SectionSpot::parse)]
+    pub(crate) at: Vec<SectionSpot>,
+    /// Form of the answer
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub(crate) format: LookupFormat,
+    #[command(flatten)]
+    pub(crate) machine: Machine,
+}
+
 /// Says what a G or M code, an alarm or a parameter means, or what each pass of a cycle does and why.
 #[derive(Debug, Args)]
 #[command(after_long_help = examples("explain"))]
@@ -367,13 +388,14 @@ pub(crate) struct Man {
 }
 
 /// The commands that have a page.
-const COMMAND_NAMES: [&str; 12] = [
+const COMMAND_NAMES: [&str; 13] = [
     "run",
     "check",
     "trace",
     "plot",
     "motion",
     "time",
+    "measure",
     "explain",
     "controls",
     "data",

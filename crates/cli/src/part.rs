@@ -1,8 +1,11 @@
 //! The part of a program: a second run of it, on the stock that the first one showed.
 
 use turnwright_control::Setup;
+use turnwright_diagnostics::Diagnostic;
 use turnwright_export::part::PartShape;
+use turnwright_stock::Section;
 use turnwright_stock::machining::RapidRates;
+use turnwright_verify::measuring::{self, Judged};
 use turnwright_verify::part::{Part, PartRun};
 
 use crate::arguments::Machine;
@@ -54,6 +57,26 @@ pub(crate) fn machined(
         measure.finish();
     }
     Ok(run.map(PartRun::finish))
+}
+
+/// The sizes that the setup file asks for, measured; none where the program stopped short or too much of it was cut, for
+/// then the part is not the finished one. No part at all has none of the sizes.
+pub(crate) fn judged(part: Option<&Part>, setup: &Setup, alarm: Option<&Diagnostic>) -> Vec<Judged> {
+    let is_incomplete = |part: &Part| part.findings.iter().any(|finding| finding.key == "part-incomplete");
+    if alarm.is_some() || part.is_some_and(is_incomplete) {
+        return Vec::new();
+    }
+    // A setup with sizes that cannot be was refused when it was read.
+    let measures = setup.measures().unwrap_or_default();
+    part.map_or_else(
+        || measuring::judge(&Section::default(), &[], &measures),
+        |part| measuring::judge(&part.section, &part.threads, &measures),
+    )
+}
+
+/// What is to be told of sizes.
+pub(crate) fn out_of_tolerance(judged: &[Judged]) -> impl Iterator<Item = Diagnostic> {
+    judged.iter().enumerate().filter_map(|(index, one)| one.finding(index + 1))
 }
 
 /// How a part is drawn; nothing when nothing is left of it.

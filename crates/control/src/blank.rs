@@ -4,12 +4,15 @@ use serde::Deserialize;
 use turnwright_geometry::{Outline, Point};
 
 use crate::OutlinePoint;
+use crate::materials::{Material, material, materials};
 use crate::outline::through;
 
 /// `[stock]` of a setup file, in work coordinates: a bar, a tube, or a profile.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Stock {
+    /// What it is made of, by a name of `data/materials.toml`.
+    pub material: Option<String>,
     /// Outer diameter of a bar or tube, mm.
     pub diameter_mm: Option<f64>,
     /// Diameter of the bore of a tube, mm.
@@ -26,6 +29,26 @@ impl Stock {
     /// Whether nothing is said about it.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
+    }
+
+    /// Whether nothing is said about its shape.
+    pub fn is_shapeless(&self) -> bool {
+        *self == Self { material: self.material.clone(), ..Self::default() }
+    }
+
+    /// What it is made of, as far as that is said.
+    ///
+    /// # Errors
+    /// A material that nobody knows, with the nearest that is known.
+    pub fn material(&self) -> Result<Option<&'static Material>, (&'static str, String)> {
+        let Some(name) = &self.material else { return Ok(None) };
+        material(name).map(Some).map_err(|nearest| {
+            let hint = nearest.map_or_else(
+                || materials().map(|one| one.name.as_str()).collect::<Vec<_>>().join(", "),
+                |nearest| format!("did you mean {nearest}?"),
+            );
+            ("material", format!("{name} is not known; {hint}"))
+        })
     }
 
     /// Its half-section, X as a radius.

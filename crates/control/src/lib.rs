@@ -9,6 +9,8 @@
 mod blank;
 mod functions;
 mod limits;
+mod materials;
+mod measures;
 mod messages;
 mod outline;
 mod parameter_text;
@@ -28,6 +30,8 @@ use serde::Deserialize;
 pub use blank::Stock;
 pub use functions::{CodeSystem, FunctionEntry, Functions, Group, parse_code};
 pub use limits::Limits;
+pub use materials::{IsoGroup, Material, material, materials};
+pub use measures::{Measure, MeasureEntry, Quantity, SectionSpot};
 pub use messages::{Language, MessageText, Messages, RaisedBy};
 pub use outline::{ArcTurn, OutlinePoint};
 pub use parameter_text::{

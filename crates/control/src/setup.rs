@@ -7,7 +7,10 @@ use turnwright_geometry::Outline;
 
 use crate::setup_comment::lay_over;
 use crate::signal::Signal;
-use crate::{Axis, Chuck, ChuckOutlines, Parameters, Stock, Tailstock, Tool, ToolEntry, embedded, nearest};
+use crate::{
+    Axis, Chuck, ChuckOutlines, Material, Measure, MeasureEntry, Parameters, Stock, Tailstock, Tool,
+    ToolEntry, embedded, nearest,
+};
 
 /// A pair of axis values in millimetres; X as a diameter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
@@ -336,6 +339,9 @@ pub struct Setup {
     /// What is in the chuck before the first cut.
     #[serde(default)]
     pub stock: Option<Stock>,
+    /// What the finished part must measure.
+    #[serde(default)]
+    pub measure: Vec<MeasureEntry>,
     /// What holds it.
     #[serde(default)]
     pub chuck: Option<Chuck>,
@@ -385,11 +391,17 @@ fn line_of(text: &str, message: &str) -> u32 {
     let path = message.split(": ").next().unwrap_or_default();
     let (section, key) = path.rsplit_once('.').unwrap_or((path, ""));
     let (mut header, mut of_section) = (String::new(), 0);
+    let mut listed = BTreeMap::<String, u32>::new();
     for (index, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
         let number = index as u32 + 1;
         if let Some(name) = line.strip_prefix('[') {
-            header = name.trim_end_matches(']').replace([' ', '"', '\''], "");
+            header = name.trim_matches(['[', ']']).replace([' ', '"', '\''], "");
+            if name.starts_with('[') {
+                let count = listed.entry(header.clone()).or_default();
+                *count += 1;
+                header = format!("{header}.{count}");
+            }
             if header == path || (header == section && of_section == 0) {
                 of_section = number;
             }
@@ -558,6 +570,8 @@ impl Setup {
     /// # Errors
     /// The key and the reason.
     pub fn check(&self) -> Result<(), SetupFault> {
+        self.material()?;
+        self.measures()?;
         self.stock_outline()?;
         self.chuck_outlines()?;
         self.tailstock_outline()?;
@@ -571,8 +585,31 @@ impl Setup {
     pub fn stock_outline(&self) -> Result<Option<Outline>, SetupFault> {
         self.stock
             .as_ref()
+            .filter(|stock| !stock.is_shapeless() || stock.is_empty())
             .map(|stock| stock.outline().map_err(|fault| of_section("stock", fault)))
             .transpose()
+    }
+
+    /// What the stock is made of.
+    ///
+    /// # Errors
+    /// A material that nobody knows.
+    pub fn material(&self) -> Result<Option<&'static Material>, SetupFault> {
+        let found =
+            self.stock.as_ref().map(|stock| stock.material().map_err(|fault| of_section("stock", fault)));
+        found.transpose().map(Option::flatten)
+    }
+
+    /// What the finished part must measure, in the order of the file.
+    ///
+    /// # Errors
+    /// The key and the reason.
+    pub fn measures(&self) -> Result<Vec<Measure>, SetupFault> {
+        let measures = self.measure.iter().enumerate();
+        let read = |(index, entry): (usize, &MeasureEntry)| {
+            entry.read().map_err(|fault| of_section(&format!("measure.{}", index + 1), fault))
+        };
+        measures.map(read).collect()
     }
 
     /// Jaws and chuck.

@@ -6,7 +6,9 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 
 use crate::setup::typed;
-use crate::{CheckSwitches, Chuck, Language, OffsetRow, OutlinePoint, Setup, Stock, Tailstock, ToolEntry};
+use crate::{
+    CheckSwitches, Chuck, Language, MeasureEntry, OffsetRow, OutlinePoint, Setup, Stock, Tailstock, ToolEntry,
+};
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -60,6 +62,7 @@ fn points(points: &[OutlinePoint]) -> Option<String> {
 
 fn stock_lines(stock: &Stock) -> Vec<Line> {
     given([
+        ("material", stock.material.as_deref().map(text)),
         ("diameter_mm", stock.diameter_mm.map(number)),
         ("bore_mm", stock.bore_mm.map(number)),
         ("length_mm", stock.length_mm.map(number)),
@@ -89,6 +92,24 @@ fn tailstock_lines(tailstock: &Tailstock) -> Vec<Line> {
         ("centre_length_mm", Some(number(tailstock.centre_length_mm))),
         ("quill_mm", Some(number(tailstock.quill_mm))),
         ("quill_length_mm", Some(number(tailstock.quill_length_mm))),
+    ])
+}
+
+fn measure_lines(entry: &MeasureEntry) -> Vec<Line> {
+    given([
+        ("name", entry.name.as_deref().map(text)),
+        ("at", entry.at.as_deref().map(text)),
+        ("from", entry.from.as_deref().map(text)),
+        ("to", entry.to.as_deref().map(text)),
+        ("diameter_mm", entry.diameter_mm.map(number)),
+        ("bore_mm", entry.bore_mm.map(number)),
+        ("wall_mm", entry.wall_mm.map(number)),
+        ("width_mm", entry.width_mm.map(number)),
+        ("length_mm", entry.length_mm.map(number)),
+        ("major_mm", entry.major_mm.map(number)),
+        ("minor_mm", entry.minor_mm.map(number)),
+        ("lead_mm", entry.lead_mm.map(number)),
+        ("tolerance_mm", entry.tolerance_mm.as_ref().map(inline)),
     ])
 }
 
@@ -182,10 +203,12 @@ impl Writer<'_> {
             return;
         }
         self.out.push_str(if self.out.is_empty() { "" } else { "\n" });
-        self.comments(name, "");
+        // A list of sections has its name in two brackets.
+        let section = name.trim_matches(['[', ']']);
+        self.comments(section, "");
         self.out.push_str(&format!("[{name}]\n"));
         for (key, value) in lines {
-            self.comments(name, key);
+            self.comments(section, key);
             self.out.push_str(&format!("{} = {value}\n", self::key(key)));
         }
     }
@@ -233,6 +256,9 @@ impl Setup {
             writer.part("tailstock", tailstock_lines(tailstock));
         }
         writer.part("checks", check_lines(&self.checks));
+        for entry in &self.measure {
+            writer.part("[measure]", measure_lines(entry));
+        }
         for (name, tool) in by_number(&self.tools) {
             writer.part(&format!("tools.{}", key(name)), tool_lines(tool));
         }
@@ -264,7 +290,7 @@ mod tests {
     use super::*;
 
     /// A setup that says everything there is to say about stock, workholding and tools.
-    const WHOLE: &str = "[stock]\ndiameter_mm = 50\nbore_mm = 10.5\nlength_mm = 80\nface_mm = 1\n\
+    const WHOLE: &str = "[stock]\nmaterial = \"45\"\ndiameter_mm = 50\nbore_mm = 10.5\nlength_mm = 80\nface_mm = 1\n\
         [chuck]\ngrip = \"outside\"\ngrip_mm = 25\njaw_z_mm = -54\njaw_length_mm = 30\njaw_height_mm = 20\n\
         diameter_mm = 160\nlength_mm = 80\nrpm_max = 4500\n\
         [tailstock]\npoint_z_mm = -4\npoint_angle_deg = 60\ncentre_mm = 20\ncentre_length_mm = 50\nquill_mm = 60\n\
@@ -277,7 +303,12 @@ mod tests {
         outline = [{ x = 0, z = 0 }, { x = 0, z = 3 }, { x = 9, z = 3, r = 9, turn = \"ccw\" }, { x = 9, z = 0 }]\n\
         holder_outline = [{ x = 9, z = 0 }, { x = 9, z = 20 }, { x = 90, z = 20 }, { x = 90, z = 0 }]\n\
         [tools.2]\nkind = \"drilling\"\ndiameter_mm = 20\npoint_angle_deg = 118\n\
-        [tools.3]\nkind = \"threading\"\nthread_angle_deg = 55\n";
+        [tools.3]\nkind = \"threading\"\nthread_angle_deg = 55\n\
+        [[measure]]\nname = \"seat\"\nat = \"Z-32\"\ndiameter_mm = 30\ntolerance_mm = [0, -0.021]\n\
+        [[measure]]\nfrom = \"Z0\"\nto = \"Z-32\"\nlength_mm = 32\ntolerance_mm = 0.1\n\
+        [[measure]]\nat = \"Z-5\"\nbore_mm = 10.5\n[[measure]]\nat = \"Z-5\"\nwall_mm = 4\n\
+        [[measure]]\nat = \"X25 Z-9\"\nwidth_mm = 4\n[[measure]]\nat = \"Z-5\"\nmajor_mm = 20\n\
+        [[measure]]\nat = \"Z-5\"\nminor_mm = 18\n[[measure]]\nat = \"Z-5\"\nlead_mm = 1.5\n";
 
     /// A forging, which goes without the sizes of a bar.
     const FORGING: &str =
@@ -314,6 +345,7 @@ mod tests {
         add("chuck", chuck_lines(whole.chuck.as_ref().expect("chuck")));
         add("tailstock", tailstock_lines(whole.tailstock.as_ref().expect("tailstock")));
         add("checks", check_lines(&whole.checks));
+        whole.measure.iter().for_each(|entry| add("measure", measure_lines(entry)));
         whole.tools.values().for_each(|tool| add("tools", tool_lines(tool)));
         for (section, keys) in &mut used {
             keys.sort_unstable();
@@ -352,6 +384,13 @@ mod tests {
         assert!(message.ends_with("; did you mean grooving?"), "{message}");
         assert!(fault("[tools.0]\ndiameter_mm = 5\n").1.contains("1 to 999"));
         assert!(fault("[tools.1]\ndiameter_mm = 5\n[tools.01]\ndiameter_mm = 5\n").1.contains("twice"));
+        let (line, message) =
+            fault("[[measure]]\nat = \"Z-1\"\nbore_mm = 1\n[[measure]]\nat = \"Z-1\"\nbore_mm = -1\n");
+        assert_eq!((line, message.as_str()), (6, "measure.2.bore_mm: must be greater than zero"));
+        let (line, message) = fault("[[measure]]\nat = \"Z-1\"\nboremm = 1\n");
+        assert!(line == 3 && message.ends_with("; did you mean bore_mm?"), "{message}");
+        let (line, message) = fault("[stock]\nmaterial = \"40Crr\"\n");
+        assert!(line == 2 && message.contains("did you mean 40Cr?"), "{message}");
         assert!(fault("[chuck]\n").1.starts_with("chuck.jaw_z_mm: "));
     }
 }

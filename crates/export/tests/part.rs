@@ -5,7 +5,7 @@ use turnwright_export::formats::part_svg::{PartDrawing, write_part_svg};
 use turnwright_export::part::PartShape;
 use turnwright_geometry::{Bounds, Outline, Point};
 use turnwright_stock::Section;
-use turnwright_stock::machining::ThreadMark;
+use turnwright_stock::machining::{ThreadHand, ThreadMark};
 
 /// A bar of 40 × 60 with a spigot of 20 × 25, a bore of 10 and four grooves of a thread of 2 mm.
 fn part() -> (Section, ThreadMark) {
@@ -23,6 +23,7 @@ fn part() -> (Section, ThreadMark) {
     let mark = ThreadMark {
         tool: 3,
         lead_mm: 2.0,
+        hand: ThreadHand::Right,
         from: Point::new(9.0, 0.0),
         to: Point::new(9.0, -9.0),
         bounds: Bounds { min: Point::new(9.0, -9.6), max: Point::new(10.0, -2.4) },

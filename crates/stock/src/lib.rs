@@ -22,6 +22,7 @@ mod contour;
 mod curve;
 mod cutter;
 mod decompose;
+mod gauge;
 mod knife;
 pub mod machining;
 mod pieces;
@@ -34,6 +35,7 @@ mod swing;
 
 pub use contour::Contour;
 pub use cutter::{Cutter, HOLLOW_MM};
+pub use gauge::{Beside, Reach};
 pub use machining::Machining;
 pub use pieces::Piece;
 pub use removed::{Contact, Removed};

@@ -203,7 +203,7 @@ impl Section {
 }
 
 /// Stretches in order, those that meet as one.
-fn joined(mut stretches: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+pub(crate) fn joined(mut stretches: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     stretches.sort_by(|a, b| a.0.total_cmp(&b.0));
     stretches.dedup_by(|next, stretch| {
         let meets = next.0 <= stretch.1 + WELD_MM;

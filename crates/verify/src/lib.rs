@@ -8,6 +8,7 @@
 
 mod checks;
 mod inference;
+pub mod measuring;
 pub mod part;
 
 pub use checks::{Checked, Checks};

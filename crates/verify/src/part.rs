@@ -90,7 +90,7 @@ impl PartRun {
         let section = Section::new(&stock).map_err(no_section)?;
         let mut machining = Machining::new(section, start, rates);
         let notebook = Notebook {
-            has_stock: given.stock.is_some(),
+            has_stock: given.stock.as_ref().is_some_and(|stock| !stock.is_shapeless()),
             has_chuck: given.chuck.is_some(),
             has_tailstock: given.tailstock.is_some(),
             tools: given.tools.keys().filter_map(|name| name.parse().ok()).collect(),

@@ -195,7 +195,9 @@ fn find(text: &ProgramText, options: &Check, printer: &Printer) -> Vec<Finding> 
         let checked = checks.finish(&session.setup);
         let setup = &checked.inferred.setup;
         let part = part::machined(text, &session, &options.machine, setup, None, &mut |_, _| Ok(()));
-        let of_part = part.ok().flatten().into_iter().flat_map(|part| part.findings);
+        let part = part.ok().flatten();
+        let judged = part::judged(part.as_ref(), &session.setup, execution.alarm());
+        let of_part = part.into_iter().flat_map(|part| part.findings).chain(part::out_of_tolerance(&judged));
         checked.findings.into_iter().chain(of_part).for_each(|finding| execution.warn(finding));
     }
     let mut findings = execution.findings();

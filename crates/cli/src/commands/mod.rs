@@ -5,6 +5,7 @@ mod controls;
 mod data;
 mod explain;
 mod generate;
+mod measure;
 mod motion;
 mod passes;
 mod plot;
@@ -26,6 +27,7 @@ pub(crate) fn run(arguments: &Arguments, printer: &Printer) -> Result<Status, Fa
         Command::Plot(options) => plot::run(options, printer),
         Command::Motion(options) => motion::run(options, printer),
         Command::Time(options) => time::run(options, printer),
+        Command::Measure(options) => measure::run(options, printer),
         Command::Explain(options) => explain::run(options, printer),
         Command::Controls(options) => controls::run(options, printer),
         Command::Data(options) => data::run(options, printer),
@@ -43,6 +45,7 @@ pub(crate) fn format(arguments: &Arguments) -> Format {
         Command::Check(options) => options.format,
         Command::Plot(options) => options.format,
         Command::Setup(options) => options.format,
+        Command::Measure(options) => lookup(options.format),
         Command::Explain(options) => lookup(options.format),
         Command::Time(options) => lookup(options.format),
         Command::Controls(options) => lookup(options.format),

@@ -77,6 +77,8 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     if let Some(part) = &mut part {
         part.findings.drain(..).for_each(|finding| execution.warn(finding));
     }
+    let judged = part::judged(part.as_ref(), &session.setup, execution.alarm());
+    part::out_of_tolerance(&judged).for_each(|finding| execution.warn(finding));
     let findings = execution.findings();
     let status = findings.iter().map(Finding::status).max().unwrap_or(Status::Clean);
     let blocks = execution.interpreter().blocks_run();
@@ -92,6 +94,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         decimals,
         assumptions: checked.inferred.assumptions,
         part: part.and_then(part::drawn),
+        judged,
         blocks,
         stopped_at,
         written: Vec::new(),

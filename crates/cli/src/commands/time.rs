@@ -119,6 +119,7 @@ fn one(path: &Path, options: &Time, printer: &Printer) -> Result<Status, Fault> 
         passes: Passes::new(&execution).finish(),
         decimals: execution.interpreter().decimals(),
         assumptions: Vec::new(),
+        judged: Vec::new(),
         part: None,
         blocks: execution.interpreter().blocks_run(),
         stopped_at,

@@ -3,6 +3,7 @@
 use turnwright_export::formats::part_svg::{mm, thread_text};
 use turnwright_export::part::PartShape;
 
+use super::sizes::judged_text;
 use super::times::parts_text;
 use super::{RunReport, assumption_text, estimates, operation_name};
 use crate::render::clean;
@@ -114,6 +115,9 @@ impl RunReport {
         rows.push((label("cutting-extents"), cutting));
         if let Some((_, shape)) = &self.part {
             rows.push((label("part"), part_text(shape, speech)));
+        }
+        if !self.judged.is_empty() {
+            rows.push((label("part-sizes"), judged_text(&self.judged, speech)));
         }
         if let Some(rpm) = summary.rpm() {
             rows.push((label("spindle"), rpm_text(rpm.min, rpm.max)));

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 use turnwright_motion::OperationKind;
 
+use super::sizes::judged_json;
 use super::times::totals_json;
 use super::{RunReport, assumption_text, estimates, operation_name};
 use crate::environment::ProgramText;
@@ -32,6 +33,7 @@ impl RunReport {
             "operations": self.operations_json(speech),
             "cutting_extents": self.extents_json(),
             "part": self.part_json(),
+            "measures": judged_json(&self.judged),
             "spindle_rpm": self.measure.summary.rpm().map(|rpm| json!({ "min": rpm.min, "max": rpm.max })),
             "time": self.measure.time_json(),
             "estimates": self.estimates_json(speech),

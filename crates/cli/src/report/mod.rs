@@ -3,6 +3,7 @@
 mod human;
 mod json;
 mod page;
+pub(crate) mod sizes;
 mod times;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -20,6 +21,7 @@ use turnwright_motion::{
 };
 use turnwright_units::{Length, Position, WorkTip, write_millimetres};
 use turnwright_verify::Assumption;
+use turnwright_verify::measuring::Judged;
 use turnwright_verify::part::Part;
 
 pub(crate) use self::times::totals_json;
@@ -160,6 +162,8 @@ pub(crate) struct RunReport {
     pub(crate) assumptions: Vec<Assumption>,
     /// The part, and how it is drawn; nothing when there is no stock.
     pub(crate) part: Option<(Part, PartShape)>,
+    /// The sizes that the setup file asks for, measured.
+    pub(crate) judged: Vec<Judged>,
     /// Blocks executed.
     pub(crate) blocks: u64,
     /// The line of the alarm that ended the program.

@@ -27,8 +27,8 @@ use turnwright_geometry::{Outline, Point, Segment};
 use turnwright_units::{Position, WorkTip};
 
 pub use self::event::{Event, EventKind, Obstacle};
-use self::threads::{Phase, ThreadMarks};
-pub use self::threads::{THREADS_MAX, TURNS_MAX, ThreadMark};
+use self::threads::{Phase, ThreadCut, ThreadMarks};
+pub use self::threads::{THREADS_MAX, TURNS_MAX, ThreadHand, ThreadMark};
 use self::ways::{point, rapid_ways, ways};
 use crate::removed::{Contact, Removed};
 use crate::section::{Section, SectionFault};
@@ -277,7 +277,9 @@ impl Machining {
         }
         if let Some(bounds) = removed.bounds {
             let number = self.tool.unwrap_or_default();
-            self.threads.note(number, lead_mm.0, *start_angle, &all, bounds);
+            let hand = ThreadHand::of(self.spindle, &all);
+            let cut = ThreadCut { tool: number, lead_mm: lead_mm.0, hand };
+            self.threads.note(cut, *start_angle, &all, bounds);
         }
         self.judge(&removed, &all, teller);
         removed

@@ -1,5 +1,6 @@
 //! Threads: where the insert is each time the spindle passes zero, and what to remember of them.
 
+use turnwright_canon::SpindleState;
 use turnwright_geometry::{Bounds, Point, Segment};
 use turnwright_units::Angle;
 
@@ -13,6 +14,35 @@ pub const THREADS_MAX: usize = 200;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Phase(f64);
 
+/// Which way a thread winds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ThreadHand {
+    /// It tightens clockwise.
+    Right,
+    /// It tightens counter-clockwise.
+    Left,
+    /// The spindle stood, or the thread lies on a face.
+    #[default]
+    Unknown,
+}
+
+impl ThreadHand {
+    /// The hand that follows from the way of the spindle and the way along Z. Seen from behind the chuck with the
+    /// spindle turning clockwise, the tool goes round the work counter-clockwise; if it comes nearer as it does so, its
+    /// trace is a right-hand thread.
+    pub(super) fn of(spindle: SpindleState, way: &Segment) -> Self {
+        let (dz, dx) = (way.end.z - way.start.z, way.end.x - way.start.x);
+        if dx.abs() > dz.abs() {
+            return Self::Unknown;
+        }
+        match (spindle, dz < 0.0) {
+            (SpindleState::Stop, _) => Self::Unknown,
+            (SpindleState::Clockwise, true) | (SpindleState::CounterClockwise, false) => Self::Right,
+            (SpindleState::Clockwise, false) | (SpindleState::CounterClockwise, true) => Self::Left,
+        }
+    }
+}
+
 /// A thread in the section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ThreadMark {
@@ -20,6 +50,8 @@ pub struct ThreadMark {
     pub tool: u32,
     /// Its lead at the start, mm.
     pub lead_mm: f64,
+    /// Which way it winds.
+    pub hand: ThreadHand,
     /// From one programmed end, mm.
     pub from: Point,
     /// To the other; of the deepest pass.
@@ -81,6 +113,14 @@ fn place(way: &Segment, share: f64) -> Point {
     }
 }
 
+/// What all passes of one thread have in common.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ThreadCut {
+    pub(super) tool: u32,
+    pub(super) lead_mm: f64,
+    pub(super) hand: ThreadHand,
+}
+
 /// The threads of a part.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ThreadMarks(Vec<ThreadMark>);
@@ -91,10 +131,12 @@ impl ThreadMarks {
     }
 
     /// A pass that cut something: of a thread that is known, or of a new one.
-    pub(super) fn note(&mut self, tool: u32, lead_mm: f64, start: Angle, way: &Segment, bounds: Bounds) {
+    pub(super) fn note(&mut self, cut: ThreadCut, start: Angle, way: &Segment, bounds: Bounds) {
+        let ThreadCut { tool, lead_mm, hand } = cut;
         const STARTS_MAX: usize = 60;
         let is_same = |mark: &&mut ThreadMark| {
-            mark.tool == tool && mark.lead_mm == lead_mm && mark.bounds.meets(&bounds, lead_mm)
+            (mark.tool, mark.lead_mm, mark.hand) == (tool, lead_mm, hand)
+                && mark.bounds.meets(&bounds, lead_mm)
         };
         if let Some(mark) = self.0.iter_mut().find(is_same) {
             mark.bounds = mark.bounds.with(bounds.min).with(bounds.max);
@@ -105,7 +147,7 @@ impl ThreadMarks {
             }
         } else if self.0.len() < THREADS_MAX {
             let (from, to) = (way.start, way.end);
-            self.0.push(ThreadMark { tool, lead_mm, from, to, bounds, starts: vec![start], passes: 1 });
+            self.0.push(ThreadMark { tool, lead_mm, hand, from, to, bounds, starts: vec![start], passes: 1 });
         }
     }
 }

@@ -132,7 +132,7 @@ impl Inference {
             })
             .collect();
         let scene = Scene { tools: &self.tools, kinds: &kinds };
-        if given.stock.is_none() {
+        if given.stock.as_ref().is_none_or(Stock::is_shapeless) {
             scene.stock(&mut inferred);
         }
         if given.chuck.is_none() && inferred.setup.stock.is_some() {
@@ -281,7 +281,9 @@ impl Scene<'_> {
             ("grip", millimetres(GRIP_MM + FREE_MM)),
         ];
         inferred.assume(section, "length_mm", "assumed-stock-length", arguments, Some(deepest.line));
+        let material = inferred.setup.stock.take().and_then(|stock| stock.material);
         inferred.setup.stock = Some(Stock {
+            material,
             diameter_mm: Some(diameter_mm),
             bore_mm,
             length_mm: Some(length_mm),
