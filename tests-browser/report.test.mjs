@@ -94,10 +94,15 @@ test("a click on a line lights its moves, Escape puts them out", async () => {
   assert.ok(now.lit.length > 0);
   assert.ok((await painted("layer-marks")) > 0);
   assert.equal(await page.getAttribute(`#line-${line}`, "aria-selected"), "true");
+  assert.equal(await page.evaluate(() => turnwright.currentLine), now.step === now.steps ? 0 : line, "its first move is shown done");
+  const marked = await painted("layer-marks");
   await page.keyboard.press("Escape");
   const then = await state();
   assert.equal(then.selectedLine, 0);
+  assert.equal(then.step, now.step, "the moment stays");
   assert.deepEqual(then.lit, []);
+  assert.ok((await painted("layer-marks")) < marked);
+  await page.keyboard.press("End");
   assert.equal(await painted("layer-marks"), 0);
 });
 
@@ -180,8 +185,28 @@ test("steps go forwards and backwards, by buttons, keys and the slider", async (
   await page.keyboard.press("Home");
   await page.keyboard.press("ArrowLeft");
   assert.equal((await state()).step, 0);
-  await page.fill("#position", "2");
-  assert.equal((await state()).step, 2);
+  const time = await page.evaluate(() => { turnwright.goTo(2); return turnwright.time; });
+  await page.evaluate(() => turnwright.goTo(0));
+  await page.fill("#position", String(time));
+  assert.equal((await state()).step, 2, "the slider is the time");
+  await page.fill("#position", String(time - 1e-3));
+  assert.equal((await state()).step, 1, "on the way");
+});
+
+test("Page Down and Page Up go from block to block", async () => {
+  const { steps } = await state();
+  await page.click("#first");
+  await page.focus("#picture");
+  const lines = [], all = await page.evaluate(() => turnwright.linesOfMoves());
+  for (let i = 0; i < 1000 && (await state()).step < steps; i++) {
+    await page.keyboard.press("PageDown");
+    const { step } = await state();
+    lines.push(all[step - 1]);
+    assert.ok(step === steps || all[step] !== all[step - 1], "at the end of a block");
+  }
+  assert.deepEqual(lines, all.filter((line, at) => line !== all[at + 1]));
+  for (let i = 0; i < lines.length; i++) await page.keyboard.press("PageUp");
+  assert.equal((await state()).step, 0);
 });
 
 test("the part that is done is drawn over the rest, and taken away again", async () => {

@@ -17,6 +17,7 @@ use crate::session::Session;
 
 /// Cuts the program out of its stock, and measures what it does, when that is wanted. `setup` is the whole setup, with
 /// what the first run showed; nothing comes back when there is no stock, for the program cuts nothing.
+/// The section along the program is kept when the path is.
 ///
 /// # Errors
 /// What the caller's look at the run gives: it may write what has been measured so far.
@@ -41,6 +42,9 @@ pub(crate) fn machined(
     let start = execution.interpreter().position();
     // A setup that is no setup was told of by the first run.
     let mut run = PartRun::new(setup, &session.setup, start, rates).ok().flatten();
+    if measure.as_ref().is_some_and(|measure| measure.path.is_some()) {
+        run = run.map(PartRun::with_history);
+    }
     while let Some(command) = execution.next_command() {
         let removed = run.as_mut().map(|run| run.add(&command));
         match &mut measure {

@@ -1,4 +1,4 @@
-// The report's behaviour, behind `report-path.js`. In: the run and the texts, embedded as JSON. Nothing is fetched,
+// The report's behaviour, behind the other scripts. In: the run and the texts, embedded as JSON. Nothing is fetched,
 // nothing is stored.
 // Coordinates are millimetres, X as a radius until it is shown; angles turn from Z towards X.
 "use strict";
@@ -42,6 +42,33 @@
     segmentEnd, arcRadius, along, lengthOf, grid, distance,
   } = typedPath(path);
 
+  const moveLength = (move) => {
+    let length = 0;
+    for (let i = path.first[move]; i < segmentEnd(move); i++) length += lengthOf(i);
+    return length;
+  };
+  // Where a move is after a share of it: X, Z.
+  const placeOn = (move, share) => {
+    let left = moveLength(move) * share;
+    for (let i = path.first[move]; i < segmentEnd(move); i++) {
+      const length = lengthOf(i);
+      if (left <= length) return along(i, length > 0 ? left / length : 0);
+      left -= length;
+    }
+    return along(segmentEnd(move) - 1, 1);
+  };
+  const model = run.part ? partModel(run.part, path, {
+    segmentEnd, along, lengthOf, sweep, arcRadius, startZ, moveLength, placeOn,
+  }) : null;
+
+  // Times: when a move ends, and when it begins after what the tool waits for. Without times four moves a second.
+  const timed = steps > 0 && path.elapsed[steps - 1] > 0;
+  const waits = new Map();
+  for (let j = 0; j < path.waits.length; j += 2) waits.set(path.waits[j], path.waits[j + 1]);
+  const endTime = (move) => (move < 0 ? 0 : timed ? path.elapsed[move] : (move + 1) / 4);
+  const startTime = (move) => endTime(move - 1) + (timed ? waits.get(move) ?? 0 : 0);
+  const totalTime = endTime(steps - 1);
+
   // Moves by the line that ran them and by the figure line that shaped them.
   const movesByLine = new Map();
   const remember = (line, move) => {
@@ -77,17 +104,18 @@
   let lit = new Uint32Array(0);           // highlighted segments
   const view = { pxPerMm: 1, x: 0, z: 0 };// what lies in the middle of the plot
   let fitted = true;
+  let pathShown = true;
 
   // ---- the picture -------------------------------------------------------------------------------------
   const picture = byId("picture");
-  const layers = ["layer-path", "layer-done", "layer-marks"].map((id) => byId(id).getContext("2d"));
-  const [pathLayer, doneLayer, marksLayer] = layers;
+  const layers = ["layer-stage", "layer-stock", "layer-path", "layer-done", "layer-marks"].map((id) => byId(id).getContext("2d"));
+  const [stageLayer, stockLayer, pathLayer, doneLayer, marksLayer] = layers;
   const LEFT = 62, BOTTOM = 26, CHUCK = 38, PAD = 26;
   let width = 0, height = 0, doneSegments = 0;
-  let colours = {};
+  const colours = {};
   const readColours = () => {
     const style = getComputedStyle(document.documentElement);
-    for (const name of ["paper", "ink", "faint-ink", "rule", "rapid", "feed", "thread", "grid", "centre", "tool", "lit", "lit-core"])
+    for (const name of ["paper", "ink", "faint-ink", "rule", "rapid", "feed", "thread", "grid", "centre", "tool", "lit", "lit-core", "stock", "stock-edge", "fallen", "holder", "insert", "error", "warning", "note"])
       colours[name] = style.getPropertyValue("--" + name).trim();
   };
   const plotMiddleX = () => LEFT + (width - LEFT) / 2, plotMiddleY = () => (height - BOTTOM) / 2;
@@ -168,92 +196,27 @@
     draw();
     c.restore();
   };
-  const tickStep = (pxPerMm, roomPx) => {
-    const least = roomPx / pxPerMm, power = 10 ** Math.floor(Math.log10(least));
-    return [1, 2, 5, 10].map((digit) => digit * power).find((value) => value >= least * (1 - 1e-9));
+  const frame = {
+    toPxX, toPxY, toZ, toX, LEFT, BOTTOM, view, colours, number, word, inPlot, get width() { return width; }, get height() { return height; },
   };
-  const tickLabel = (value, stepMm) => number(value, Math.max(0, -Math.floor(Math.log10(stepMm) + 1e-9)));
-
-  const drawAxes = (c) => {
-    c.font = "12px system-ui, sans-serif";
-    c.lineWidth = 1;
-    const widest = Math.max(...[toZ(LEFT), toZ(width)].map((z) => c.measureText(number(z, 2)).width));
-    const stepZ = tickStep(view.pxPerMm, Math.max(56, widest + 22)), stepX = tickStep(view.pxPerMm / 2, 34);
-    c.strokeStyle = colours.grid;
-    c.fillStyle = colours["faint-ink"];
-    c.textAlign = "center";
-    c.textBaseline = "alphabetic";
-    for (let n = Math.ceil(toZ(LEFT) / stepZ); n * stepZ <= toZ(width); n++) {
-      const px = Math.round(toPxX(n * stepZ)) + 0.5;
-      c.beginPath(); c.moveTo(px, 0); c.lineTo(px, height - BOTTOM); c.stroke();
-      const label = tickLabel(n * stepZ, stepZ), half = c.measureText(label).width / 2;
-      if (px - half > LEFT - 8 && px + half < width - 56) c.fillText(label, px, height - 9);
-    }
-    c.textAlign = "right";
-    c.textBaseline = "middle";
-    for (let n = Math.ceil(2 * toX(height - BOTTOM) / stepX); n * stepX <= 2 * toX(0); n++) {
-      const py = Math.round(toPxY(n * stepX / 2)) + 0.5;
-      c.beginPath(); c.moveTo(LEFT, py); c.lineTo(width, py); c.stroke();
-      if (py > 32 && py < height - BOTTOM - 6) c.fillText(tickLabel(n * stepX, stepX), LEFT - 7, py);
-    }
-    c.strokeStyle = colours.rule;
-    c.strokeRect(LEFT + 0.5, -1, width, height - BOTTOM + 0.5);
-    c.fillStyle = colours.ink;
-    c.font = "bold 12px system-ui, sans-serif";
-    c.textAlign = "left";
-    c.textBaseline = "alphabetic";
-    c.fillText(word("picture-axis-x"), 6, 17);
-    c.textAlign = "right";
-    c.fillText(word("picture-axis-z"), width - 8, height - 9);
-  };
-  const drawChuck = (c) => {
-    const centre = toPxY(0), seen = centre > 0 && centre < height - BOTTOM;
-    const middle = seen ? centre : (height - BOTTOM) / 2;
-    const top = Math.max(6, middle - 80), bottom = Math.min(height - BOTTOM - 2, middle + 80);
-    c.save();
-    c.beginPath(); c.rect(LEFT, top, 15, bottom - top); c.clip();
-    c.strokeStyle = colours["faint-ink"];
-    c.lineWidth = 1.5;
-    for (let y = top - 20; y < bottom + 20; y += 7) { c.beginPath(); c.moveTo(LEFT, y + 15); c.lineTo(LEFT + 15, y); c.stroke(); }
-    c.restore();
-    c.strokeStyle = colours["faint-ink"];
-    c.lineWidth = 1;
-    c.strokeRect(LEFT + 0.5, top, 15, bottom - top);
-    c.save();
-    c.font = "11px system-ui, sans-serif";
-    // Beside the centre line, not across it.
-    const half = c.measureText(word("picture-chuck-side")).width / 2 + 8;
-    c.translate(LEFT + 29, !seen ? middle : centre > 2 * half + 8 ? centre - half : centre + half);
-    c.rotate(-Math.PI / 2);
-    c.textAlign = "center";
-    c.fillStyle = colours["faint-ink"];
-    c.fillText(word("picture-chuck-side"), 0, 0);
-    c.restore();
-  };
-  const drawZero = (c) => {
-    const x = toPxX(0), y = toPxY(0);
-    c.beginPath(); c.arc(x, y, 6, 0, 2 * Math.PI);
-    c.fillStyle = colours.paper; c.fill();
-    c.fillStyle = c.strokeStyle = colours.ink;
-    c.lineWidth = 1; c.stroke();
-    for (const start of [-Math.PI / 2, Math.PI / 2]) { c.beginPath(); c.moveTo(x, y); c.arc(x, y, 6, start, start + Math.PI / 2); c.fill(); }
-  };
+  const stage = stageDrawing(frame), drawing = partDrawing(frame, model);
   let drawnView = null;
   const drawPath = () => {
     const c = pathLayer;
     drawnView = { ...view };
     for (const { canvas } of layers) canvas.style.transform = "";
     c.clearRect(0, 0, width, height);
-    drawAxes(c);
+    stageLayer.clearRect(0, 0, width, height);
+    stage.axes(stageLayer);
     inPlot(c, () => {
-      drawChuck(c);
+      if (!model?.obstacles.length) stage.chuck(c);
       c.strokeStyle = colours.centre;
       c.lineWidth = 1;
       c.setLineDash([14, 4, 2, 4]);
       c.beginPath(); c.moveTo(LEFT, toPxY(0)); c.lineTo(width, toPxY(0)); c.stroke();
       c.setLineDash([]);
-      strokeSegments(c, 0, segments, null, step < steps ? { share: 0.3 } : null);
-      drawZero(c);
+      if (pathShown) strokeSegments(c, 0, segments, null, step < steps ? { share: 0.3 } : null);
+      stage.zero(c);
       if (segments === 0) {
         c.fillStyle = colours["faint-ink"];
         c.font = "15px system-ui, sans-serif";
@@ -263,9 +226,11 @@
     });
     doneSegments = 0;
     doneLayer.clearRect(0, 0, width, height);
+    drawStock();
     drawDone();
     drawMarks();
   };
+  const drawStock = () => { if (model) drawing.stock(stockLayer, model.sectionAt(step, part), model.fallenAt(step)); };
   // What is done so far, drawn on; going back starts anew.
   const drawDone = () => {
     const wanted = step < steps ? path.first[step] : 0;
@@ -273,7 +238,7 @@
       doneLayer.clearRect(0, 0, width, height);
       doneSegments = 0;
     }
-    if (wanted > doneSegments) {
+    if (wanted > doneSegments && pathShown) {
       inPlot(doneLayer, () => strokeSegments(doneLayer, doneSegments, wanted, null, { wider: 0.9 }));
       doneSegments = wanted;
     }
@@ -324,27 +289,43 @@
         c.fillStyle = colours["lit-core"]; c.fill();
       }
       drawPassNumbers(c);
+      drawing.findings(c, marks);
       const tool = toolPosition();
       if (tool && step < steps) {
-        c.beginPath(); c.arc(toPxX(tool[1]), toPxY(tool[0]), 6, 0, 2 * Math.PI);
+        const shape = model?.toolOf(currentMove());
+        if (shape) drawing.tool(c, shape, tool);
+        c.beginPath(); c.arc(toPxX(tool[1]), toPxY(tool[0]), model ? 3 : 6, 0, 2 * Math.PI);
         c.fillStyle = colours.tool; c.fill();
-        c.lineWidth = 2; c.strokeStyle = colours.paper; c.stroke();
+        c.lineWidth = model ? 1 : 2; c.strokeStyle = colours.paper; c.stroke();
       }
     });
   };
   // Where the tool is: the end of what is done, or on the way along the next move.
   const toolPosition = () => {
     if (segments === 0) return null;
-    if (step >= steps) return [endX[segments - 1], endZ[segments - 1]];
-    let left = 0;
-    for (let i = path.first[step]; i < segmentEnd(step); i++) left += lengthOf(i);
-    left *= part;
-    for (let i = path.first[step]; i < segmentEnd(step); i++) {
-      const length = lengthOf(i);
-      if (left <= length) return along(i, length > 0 ? left / length : 0);
-      left -= length;
+    return step < steps ? placeOn(step, part) : [endX[segments - 1], endZ[segments - 1]];
+  };
+  const currentMove = () => (part > 0 || step === 0 ? step : step - 1);
+  // Crashes and other findings that have a place in the section.
+  const marks = run.diagnostics.flatMap((found, at) => (found.mark ? [{ ...found.mark, found, at }] : []));
+  const markAt = (px, py) => marks.find(({ x, z }) => Math.hypot(toPxX(z) - px, toPxY(x) - py) <= 11);
+  const showMark = (mark) => {
+    setPlaying(false);
+    // On its way the tool is at the place.
+    const move = mark.step - 1;
+    if (move >= 0) {
+      let share = 1, least = Infinity;
+      for (let n = 0; n <= 400; n++) {
+        const [x, z] = placeOn(move, n / 400), away = Math.hypot(x - mark.x, z - mark.z);
+        if (away < least) { least = away; share = n / 400; }
+      }
+      if (share < 1) goTo(move, share); else goTo(move + 1);
     }
-    return along(segmentEnd(step) - 1, 1);
+    select(mark.found.line);
+    linesLast = true;
+    readout();
+    const px = toPxX(mark.z), py = toPxY(mark.x);
+    if (px < LEFT + 20 || px > width - 60 || py < 20 || py > height - BOTTOM - 20) { view.z = mark.z; view.x = mark.x; fitted = false; redraw(); }
   };
   // After a change of the view. A long path is first moved as a picture and drawn anew when the hand rests.
   const LONG_PATH = 20000, REST_MS = 140;
@@ -368,9 +349,12 @@
 
   // ---- the view ----------------------------------------------------------------------------------------
   const fit = () => {
-    const [x0, x1, z0, z1] = path.view;
+    let [x0, x1, z0, z1] = path.view;
+    if (model) { z0 = Math.min(z0, model.bounds.z0); z1 = Math.max(z1, model.bounds.z1); x1 = Math.max(x1, model.bounds.x1); }
     const roomZ = Math.max(40, width - LEFT - CHUCK - 2 * PAD), roomX = Math.max(40, height - BOTTOM - 2 * PAD);
     view.pxPerMm = Math.min(roomZ / Math.max(z1 - z0, 0.1), roomX / Math.max(x1 - x0, 0.1));
+    // The half below the axis too, as far as there is room.
+    if (model) x0 = Math.min(x0, Math.max(-x1, x1 - roomX / view.pxPerMm));
     view.x = (x0 + x1) / 2;
     view.z = (z0 + z1) / 2 - CHUCK / 2 / view.pxPerMm;
     fitted = true;
@@ -399,6 +383,7 @@
       layer.canvas.height = Math.round(height * ratio);
       layer.setTransform(ratio, 0, 0, ratio, 0, 0);
     }
+    drawing.forget();
     if (fitted) fit();
     drawPath();
   };
@@ -464,6 +449,7 @@
     makeRows(Math.max(1, top - ROWS_AROUND), Math.min(all, top + seen + ROWS_AROUND));
   };
   const rowOf = (line) => (line >= rowsFrom && line <= rowsTo ? rows.children[line - rowsFrom] : null);
+  const isOnTheWay = () => step < steps && (step > 0 || part > 0);
   const isMoveSelected = () => pickedMove >= 0;
   let marked = [];
   const markRows = () => {
@@ -478,9 +464,9 @@
     };
     for (let line = Math.max(selectedFrom, rowsFrom); selectedFrom > 0 && line <= Math.min(selectedTo, rowsTo); line++) mark(line, "selected");
     if (isMoveSelected()) mark(path.figure[pickedMove], "shaped");
-    if (step > 0 && step < steps) {
-      mark(path.line[step - 1], "current");
-      mark(path.figure[step - 1], "shaped");
+    if (isOnTheWay()) {
+      mark(path.line[currentMove()], "current");
+      mark(path.figure[currentMove()], "shaped");
     }
     if (selectedFrom > 0) list.setAttribute("aria-activedescendant", "line-" + selectedFrom);
     else list.removeAttribute("aria-activedescendant");
@@ -527,7 +513,7 @@
     else if (pickedPass) target.replaceChildren(...spans([
       `${cycles[pickedPass[0]].code} ${inLanguage(cycles[pickedPass[0]].name)}`,
       word("pass", { n: cycles[pickedPass[0]].passes[pickedPass[1]].number }), ...describePass()]));
-    else if (!linesLast && step > 0 && step < steps) target.replaceChildren(...spans(describe(step - 1)));
+    else if (!linesLast && isOnTheWay()) target.replaceChildren(...spans(describe(currentMove())));
     else if (!linesLast && step === 0 && steps > 0) target.replaceChildren(...spans([word("readout-start")]));
     else if (selectedFrom > 0) {
       const count = new Set(movesOfSelection()).size;
@@ -538,8 +524,12 @@
         ...(count === 1 && selectedTo === selectedFrom ? describe(movesOfSelection()[0]) : []),
       ]));
     } else target.replaceChildren(word("readout-none"));
-    byId("count").textContent = word("step-of", { n: step, of: steps });
-    byId("position").value = step;
+    showTime();
+  };
+  const showTime = () => {
+    const steps_ = word("step-of", { n: step, of: steps });
+    byId("count").textContent = timed ? `${clockFace(now())} / ${clockFace(totalTime)} · ${steps_}` : steps_;
+    byId("position").value = now();
   };
   function movesOfSelection() {
     const all = [];
@@ -563,73 +553,92 @@
     drawMarks();
   };
   const goTo = (to, partDone = 0) => {
-    const before = step;
+    const before = step, current = currentMove();
     step = Math.max(0, Math.min(steps, to));
     part = step < steps ? partDone : 0;
+    if (part === 0 && waited > 0 && step !== before) waited = 0;
     // The whole path is drawn strongly when all is done, faintly else.
     if ((before === steps) !== (step === steps)) drawPath();
-    else { drawDone(); drawMarks(); }
-    if (before !== step) {
+    else { drawStock(); drawDone(); drawMarks(); }
+    if (before === step && current === currentMove()) showTime();
+    else {
       pickedMove = -1;
       pickedPass = null;
       markPass();
       linesLast = false;
-      if (step > 0 && step < steps) scrollTo(path.line[step - 1]);
+      if (isOnTheWay()) scrollTo(path.line[currentMove()]);
       markRows();
       readout();
       if (step < steps) drawMarks();
     }
   };
   const clearSelection = () => { select(0); };
+  // The time of what is shown; the tool may stand and wait at the beginning of a move.
+  let waited = 0;
+  const now = () => (step >= steps ? totalTime
+    : part > 0 ? startTime(step) + part * (endTime(step) - startTime(step)) : endTime(step - 1) + waited);
+  const goToTime = (time) => {
+    let low = 0, high = steps;
+    while (low < high) { const middle = (low + high) >> 1; if (endTime(middle) > time) high = middle; else low = middle + 1; }
+    const begin = low < steps ? startTime(low) : 0;
+    waited = low < steps ? Math.max(0, Math.min(time, begin) - endTime(low - 1)) : 0;
+    const still = waited;
+    goTo(low, low < steps && time > begin ? Math.min(1, (time - begin) / (endTime(low) - begin)) : 0);
+    waited = still;
+    showTime();
+  };
+  const clockFace = (value) => {
+    const whole = Math.floor(value + 1e-6), two = (n) => String(n).padStart(2, "0");
+    return whole < 3600 ? `${Math.floor(whole / 60)}:${two(whole % 60)}` : `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)}`;
+  };
 
   // ---- playing -----------------------------------------------------------------------------------------
   let playing = false, clock = 0, lastFrame = 0;
-  // A program without times plays four moves a second.
-  const timed = steps > 0 && path.elapsed[steps - 1] > 0;
-  const endTime = (move) => (timed ? path.elapsed[move] : (move + 1) / 4);
   const setPlaying = (on) => {
+    if (playing === on) return;
     playing = on && steps > 0;
     byId("play").classList.toggle("playing", playing);
     labelPlay();
-    if (!playing) { if (part > 0) goTo(step, 0); return; }
-    if (step >= steps) goTo(0);
-    clock = step > 0 ? endTime(step - 1) : 0;
-    lastFrame = performance.now();
-    requestAnimationFrame(frame);
-  };
-  const frame = (now) => {
     if (!playing) return;
-    clock += (Math.max(0, now - lastFrame) / 1000) * Number(byId("speed").value);
-    lastFrame = now;
-    let next = step;
-    while (next < steps && endTime(next) <= clock) next++;
-    const started = next > 0 ? endTime(next - 1) : 0;
-    const share = next < steps && endTime(next) > started ? (clock - started) / (endTime(next) - started) : 0;
-    goTo(next, Math.max(0, Math.min(1, share)));
-    if (next >= steps) setPlaying(false);
-    else requestAnimationFrame(frame);
+    if (step >= steps) goTo(0);
+    clock = now();
+    lastFrame = performance.now();
+    requestAnimationFrame(playOn);
   };
-  const stepBy = (by) => { setPlaying(false); goTo(step + by); };
+  const playOn = (at) => {
+    if (!playing) return;
+    clock += (Math.max(0, at - lastFrame) / 1000) * Number(byId("speed").value);
+    lastFrame = at;
+    goToTime(clock);
+    if (step >= steps) setPlaying(false);
+    else requestAnimationFrame(playOn);
+  };
+  const stepBy = (by) => { setPlaying(false); goTo(step + by + (by < 0 && part > 0 ? 1 : 0)); };
+  // To the end of the block before or behind: where another line begins.
+  const stepBlock = (by) => {
+    setPlaying(false);
+    const lineOf = (move) => path.line[Math.max(0, Math.min(steps - 1, move))];
+    let to = by > 0 && part > 0 ? step : step - (part > 0 ? 0 : 1);
+    const line = lineOf(to);
+    if (by > 0) {
+      if (step > 0 || part > 0) while (to < steps && lineOf(to) === line) to++;
+      else to = 0;
+      const next = lineOf(to);
+      while (to + 1 < steps && lineOf(to + 1) === next) to++;
+      goTo(Math.min(steps, to + 1));
+    } else {
+      while (to >= 0 && lineOf(to) === line) to--;
+      goTo(to + 1);
+    }
+  };
 
   // ---- tables ------------------------------------------------------------------------------------------
   const lineButton = (text, from, to) => element("button", { type: "button", class: "link", onclick: () => { select(from, to); list.focus({ preventScroll: true }); document.querySelector("main").scrollIntoView({ block: "nearest" }); } }, text);
-  const makeOperations = () => {
-    const cell = (text, quantity) => element("td", quantity ? { class: "quantity" } : {}, text);
-    const head = [["", 0], ["tool", 0], ["operation", 0], ["code", 0], ["lines", 0], ["passes", 1], ["cutting-mm", 1], ["rapid-mm", 1], ["time", 1]];
-    const total = (field) => run.operations.reduce((sum, row) => sum + row[field], 0);
-    byId("operations").replaceChildren(
-      element("thead", {}, element("tr", {}, ...head.map(([key, quantity]) =>
-        element("th", { scope: "col", class: quantity ? "quantity" : undefined }, key ? word(key) : "")))),
-      element("tbody", {}, ...run.operations.map((row) => element("tr", {},
-        cell(String(row.index)), cell(row.tool === null ? "" : "T" + row.tool),
-        element("td", {}, lineButton(inLanguage(row.name), row.first, row.last)), cell(row.code),
-        cell(row.first === row.last ? String(row.first) : `${row.first}–${row.last}`), cell(row.passes > 0 ? String(row.passes) : "", 1),
-        cell(number(row.cutting_mm, 1), 1), cell(number(row.rapid_mm, 1), 1), cell(seconds(row.seconds), 1)))),
-      element("tfoot", {}, element("tr", {}, cell(""), cell(""), cell(word("total")), cell(""), cell(""), cell(""),
-        cell(number(total("cutting_mm"), 1), 1), cell(number(total("rapid_mm"), 1), 1), cell(seconds(total("seconds")), 1))));
-    byId("operations").closest("section").hidden = run.operations.length === 0;
-    byId("note").textContent = inLanguage(run.note);
-  };
+  const placeButton = (text, at) => element("button", { type: "button", class: "link", onclick: () => {
+    showMark(marks.find((mark) => mark.at === at));
+    document.querySelector("main").scrollIntoView({ block: "nearest" });
+  } }, text);
+  const makeTables = reportTables({ run, byId, element, word, inLanguage, number, seconds, lineButton, placeButton, SIGNS });
   const passRow = (at, row) => byId(`pass-${at}-${row}`);
   const selectPass = (at, row) => {
     select(cycles[at].passes[row].line, cycles[at].passes[row].line, -1, [at, row]);
@@ -676,19 +685,6 @@
     if (details && !details.open) { details.open = true; fillCycle(details); }
     passRow(...pickedPass)?.setAttribute("aria-current", "true");
   }
-  const makeDiagnostics = () => {
-    const detail = (key, text) => (text ? [element("p", { class: "detail" }, word(key, { text }))] : []);
-    byId("diagnostics").replaceChildren(...(run.diagnostics.length === 0 ? [word("none-found")] : run.diagnostics.map((found) =>
-      element("div", { class: "found " + found.severity },
-        element("p", { class: "head" }, element("span", { class: found.severity }, `${SIGNS[found.severity]} ${word("severity-" + found.severity)} ${found.id} `),
-          ...(found.line > 0 ? [lineButton(word("line", { n: found.line }), found.line, found.line)] : [])),
-        element("p", {}, inLanguage(found.message)), ...detail("cause", inLanguage(found.cause)), ...detail("remedy", inLanguage(found.remedy))))));
-  };
-  const makeFacts = () => {
-    byId("facts").replaceChildren(...run.facts.map((fact) =>
-      element("tr", {}, element("th", { scope: "row" }, inLanguage(fact.label)), element("td", {}, fact.value))));
-    byId("facts").closest("section").hidden = run.facts.length === 0;
-  };
   const makeLegend = () => {
     const stroke = (look) => {
       const span = element("span");
@@ -699,10 +695,12 @@
     const entries = KINDS.filter((_, k) => used.has(k)).map((name) =>
       [word("picture-" + name), `stroke="var(--${name})" stroke-width="${LOOK[name][0] + 0.4}" stroke-dasharray="${LOOK[name][1].join(" ")}"`]);
     entries.push([word("picture-centre-line"), `stroke="var(--centre)" stroke-dasharray="14 4 2 4"`]);
+    if (model) entries.push([word("picture-stock"), `stroke="var(--faint-ink)" stroke-dasharray="10 3 2 3 2 3"`]);
+    if (marks.length > 0) entries.push([word("picture-finding"), `stroke="var(--error)" stroke-width="2" stroke-dasharray="4 3"`]);
     byId("legend").replaceChildren(...entries.map(([text, look]) => element("li", {}, stroke(look), text)));
   };
-  const KEYS = [["→ ←", "key-step"], ["Home End", "key-ends"], ["Space", "key-play"], ["↓ ↑", "key-line"], ["Enter", "key-enter"],
-    ["+ −", "key-zoom"], ["Shift+↑ ↓ ← →", "key-pan"], ["0 F", "key-fit"], ["L", "key-language"], ["Esc", "key-escape"], ["?", "key-help"]];
+  const KEYS = [["→ ←", "key-step"], ["PgDn PgUp", "key-block"], ["Home End", "key-ends"], ["Space", "key-play"], ["↓ ↑", "key-line"], ["Enter", "key-enter"],
+    ["+ −", "key-zoom"], ["Shift+↑ ↓ ← →", "key-pan"], ["0 F", "key-fit"], ...(model ? [["P", "key-path"]] : []), ["L", "key-language"], ["Esc", "key-escape"], ["?", "key-help"]];
   const makeKeys = () => byId("key-list").replaceChildren(...KEYS.flatMap(([keys, key]) => [
     element("dt", {}, ...keys.split(" ").flatMap((one) => [element("kbd", {}, one), " "])), element("dd", {}, word(key))]));
 
@@ -722,10 +720,8 @@
       if (one.tagName === "BUTTON" || one.tagName === "SELECT") one.title = word(one.dataset.label);
     });
     labelPlay();
-    makeOperations();
+    makeTables();
     makeCycles();
-    makeDiagnostics();
-    makeFacts();
     makeLegend();
     makeKeys();
     showRows(true);
@@ -741,14 +737,20 @@
     first: () => { setPlaying(false); goTo(0); }, back: () => stepBy(-1), play: () => setPlaying(!playing), forward: () => stepBy(1),
     last: () => { setPlaying(false); goTo(steps); }, "zoom-in": () => zoom(1.5), "zoom-out": () => zoom(1 / 1.5), fit, language: toggleLanguage, help,
   })) byId(id).addEventListener("click", act);
-  byId("position").max = steps;
-  byId("position").addEventListener("input", (event) => { setPlaying(false); goTo(Number(event.target.value)); });
+  byId("views").hidden = !model;
+  byId("path-shown").addEventListener("click", () => togglePath());
+  byId("position").max = totalTime;
+  byId("position").addEventListener("input", (event) => { setPlaying(false); goToTime(Number(event.target.value)); });
+  const goToSelection = () => { const [first] = movesOfSelection(); if (first !== undefined) { setPlaying(false); goTo(first + 1); } };
+  // A line is chosen, and its first move is shown done.
   list.addEventListener("click", (event) => {
     const row = event.target.closest(".row");
-    if (row) select(Number(row.dataset.line));
+    if (!row) return;
+    select(Number(row.dataset.line));
+    goToSelection();
+    linesLast = true;
+    readout();
   });
-  const goToSelection = () => { const [first] = movesOfSelection(); if (first !== undefined) { setPlaying(false); goTo(first + 1); } };
-  list.addEventListener("dblclick", goToSelection);
   list.addEventListener("scroll", () => showRows(false));
 
   let drag = null;
@@ -778,15 +780,23 @@
       fingers.set(event.pointerId, [px, py]);
       return;
     }
-    const near = findAt(px, py);
+    const near = findAt(px, py), mark = markAt(px, py);
     const place = `X⌀ ${number(2 * toX(py), 2)}  Z ${number(toZ(px), 2)}`;
+    if (mark) {
+      byId("hover").textContent = `${mark.found.id} ${inLanguage(mark.found.message)}`;
+      picture.style.cursor = "pointer";
+      return;
+    }
     byId("hover").textContent = near < 0 ? place : [place, ...describe(moveOf[near]).slice(1, -1)].join(" · ");
     picture.style.cursor = near < 0 ? "" : "pointer";
   });
   const release = (event) => {
     if (fingers.delete(event.pointerId) && drag && !drag.moved && event.type === "pointerup") {
-      const near = findAt(...at(event));
-      if (near >= 0) select(path.line[moveOf[near]], path.line[moveOf[near]], moveOf[near]);
+      const near = findAt(...at(event)), mark = markAt(...at(event));
+      if (mark) {
+        showMark(mark);
+        byId("found-" + mark.at)?.scrollIntoView({ block: "nearest" });
+      } else if (near >= 0) select(path.line[moveOf[near]], path.line[moveOf[near]], moveOf[near]);
       else clearSelection();
     }
     if (fingers.size === 0) drag = null;
@@ -811,6 +821,7 @@
     const lines = run.program.length;
     const acts = {
       ArrowRight: () => stepBy(1), ArrowLeft: () => stepBy(-1),
+      PageDown: () => stepBlock(1), PageUp: () => stepBlock(-1), ...(model ? { p: togglePath } : {}),
       Home: () => { setPlaying(false); goTo(0); }, End: () => { setPlaying(false); goTo(steps); },
       ArrowDown: () => select(Math.min(lines, selectedTo + 1)), ArrowUp: () => select(Math.max(1, selectedFrom - 1)),
       Enter: goToSelection, " ": () => setPlaying(!playing), "+": () => zoom(1.25), "=": () => zoom(1.25), "-": () => zoom(0.8),
@@ -825,6 +836,11 @@
   });
   keys.addEventListener("keydown", (event) => { if (event.key === "?") { event.preventDefault(); event.stopPropagation(); keys.close(); } });
 
+  const togglePath = () => {
+    pathShown = !pathShown;
+    byId("path-shown").setAttribute("aria-pressed", pathShown);
+    drawPath();
+  };
   const recolour = () => { readColours(); drawPath(); };
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", recolour);
   window.addEventListener("beforeprint", () => { document.documentElement.classList.add("printing"); recolour(); });
@@ -856,6 +872,19 @@
       const [x, z] = along(i, 0.5), r = picture.getBoundingClientRect();
       return { x: r.left + picture.clientLeft + toPxX(z), y: r.top + picture.clientTop + toPxY(x) };
     },
+    get time() { return now(); },
+    get totalTime() { return totalTime; },
+    get currentLine() { return isOnTheWay() ? path.line[currentMove()] : 0; },
+    // The section that is shown: mm², and its rings at a Z as diameters.
+    get sectionArea() { return model && sectionArea(model.sectionAt(step, part).slabs); },
+    diametersAt: (z) => model && ringsAt(model.sectionAt(step, part).slabs, z).map((ring) => ring.map((x) => 2 * x)),
+    get moments() { return model?.moments.length ?? 0; },
+    marks: () => marks.map(({ x, z, at }) => {
+      const r = picture.getBoundingClientRect();
+      return { finding: at, x: r.left + picture.clientLeft + toPxX(z), y: r.top + picture.clientTop + toPxY(x) };
+    }),
+    linesOfMoves: () => Array.from(path.line),
+    goToTime,
     lineOf: (i) => path.line[moveOf[i]],
     selectLine: (line) => select(line), goTo, fit, setLanguage,
   };

@@ -239,7 +239,7 @@ fn rough_and_finish(demo: &mut Demo) {
     }
 }
 
-fn report(language: Language, cycles: Vec<Cycle>) -> Report {
+fn report(language: Language, cycles: Vec<Cycle>) -> Report<'static> {
     let row = |index, tool, name: [&str; 2], code: &str, lines: (u32, u32), passes, numbers: [f64; 3]| {
         let [cutting_mm, rapid_mm, seconds] = numbers;
         OperationRow {
@@ -275,6 +275,7 @@ fn report(language: Language, cycles: Vec<Cycle>) -> Report {
             message_zh: zh[0].into(),
             cause_zh: zh[1].into(),
             remedy_zh: zh[2].into(),
+            mark: None,
         }
     };
     let cycles = cycles.into_iter().map(|cycle| {
@@ -292,6 +293,8 @@ fn report(language: Language, cycles: Vec<Cycle>) -> Report {
         CycleTable { cycle, name_en, name_zh, setting_names }
     });
     Report {
+        assumptions: Vec::new(),
+        part: None,
         title: "demo-shaft.nc".into(),
         control: "fanuc-0i-tf".into(),
         control_reason: "nothing else was asked for".into(),

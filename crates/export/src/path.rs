@@ -91,6 +91,8 @@ pub struct Move {
     pub advance: Option<Advance>,
     /// Time from the start of the program to the end of this move.
     pub elapsed_s: f64,
+    /// How long the move itself takes.
+    pub seconds: f32,
 }
 
 /// A rectangle in the plane of the path, millimetres, X as a radius.
@@ -138,6 +140,7 @@ pub struct PathRecorder {
     commands: u32,
     tool: u32,
     elapsed_s: f64,
+    seconds: f64,
     dwell_s: f64,
     cutting_extents: Option<Extents>,
     extents: Option<Extents>,
@@ -159,6 +162,7 @@ impl PathRecorder {
             commands: 0,
             tool: 0,
             elapsed_s: 0.0,
+            seconds: 0.0,
             dwell_s: 0.0,
             cutting_extents: None,
             extents: None,
@@ -175,6 +179,7 @@ impl PathRecorder {
     pub fn add(&mut self, command: &Command, seconds: f64) {
         let seconds = if seconds.is_finite() { seconds.max(0.0) } else { 0.0 };
         self.elapsed_s += seconds;
+        self.seconds = seconds;
         let end = self.section.end_of(&command.action).unwrap_or(self.at);
         match &command.action {
             Action::Rapid { path, .. } => self.add_rapid(command, end, *path),
@@ -357,6 +362,7 @@ impl PathRecorder {
             tool: self.tool,
             advance,
             elapsed_s: self.elapsed_s,
+            seconds: self.seconds as f32,
         });
     }
 

@@ -12,7 +12,8 @@
 //! is finite; a cut costs what lies in its window, not what the section holds, and allocates nothing once its memory
 //! has grown. Edges nearer than [`WELD_MM`] are one.
 //!
-//! [`Machining`] applies canonical commands to a section and tells of crashes.
+//! [`Machining`] applies canonical commands to a section and tells of crashes; [`History`] remembers the section along
+//! them.
 //!
 //! Deliberately not here: frames and offsets, feeds and time, pixels, words.
 
@@ -23,6 +24,7 @@ mod curve;
 mod cutter;
 mod decompose;
 mod gauge;
+pub mod history;
 mod knife;
 pub mod machining;
 mod pieces;
@@ -36,6 +38,7 @@ mod swing;
 pub use contour::Contour;
 pub use cutter::{Cutter, HOLLOW_MM};
 pub use gauge::{Beside, Reach};
+pub use history::History;
 pub use machining::Machining;
 pub use pieces::Piece;
 pub use removed::{Contact, Removed};

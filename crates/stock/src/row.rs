@@ -78,6 +78,11 @@ impl Run {
         self.slabs.len()
     }
 
+    /// How many edges it holds.
+    pub(crate) fn edges(&self) -> usize {
+        2 * self.bands.len()
+    }
+
     /// Where the first slab begins and the last ends.
     fn ends(&self) -> Option<(f64, f64)> {
         Some((self.slabs.first()?.from, self.slabs.last()?.to))

@@ -15,9 +15,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use turnwright_canon::{Action, Command, Origin};
 use turnwright_control::{Setup, SetupFault};
 use turnwright_diagnostics::{Diagnostic, Place, Severity, SourceId};
-use turnwright_geometry::{Outline, Point};
+use turnwright_geometry::{Bounds, Outline, Point};
 use turnwright_stock::machining::{Event, EventKind, Obstacle, RapidRates, ThreadMark, ToolShape};
-use turnwright_stock::{Contact, Machining, Removed, Section};
+use turnwright_stock::{Contact, History, Machining, Removed, Section};
 use turnwright_units::{Position, WorkTip};
 
 /// Moves that are cut out of the stock.
@@ -44,6 +44,9 @@ pub struct PartRun {
     commands: u64,
     is_full: bool,
     notebook: Notebook,
+    history: Option<History>,
+    tools: BTreeMap<u32, ToolShape>,
+    obstacles: Vec<(Obstacle, Outline)>,
 }
 
 /// What came out.
@@ -57,6 +60,31 @@ pub struct Part {
     pub threads: Vec<ThreadMark>,
     /// What was hit, and what is not shown.
     pub findings: Vec<Diagnostic>,
+    /// Where and when, for each of the findings that have a place.
+    pub marks: Vec<Mark>,
+    /// The section along the program, when it was asked for.
+    pub history: Option<History>,
+    /// The tools by station, as far as they were looked at; 0 is what moves before any is called.
+    pub tools: BTreeMap<u32, ToolShape>,
+    /// What stands around the work.
+    pub obstacles: Vec<(Obstacle, Outline)>,
+}
+
+/// Where a finding is in the section.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mark {
+    /// Key of the finding.
+    pub key: &'static str,
+    /// Line of its block.
+    pub line: (SourceId, u32),
+    /// Number of the command, from 0.
+    pub command: u64,
+    /// The programmed point when it happens.
+    pub place: Point,
+    /// How deep, mm; 0 when nothing is hit.
+    pub depth_mm: f64,
+    /// Round what is hit.
+    pub bounds: Option<Bounds>,
 }
 
 /// What the setup names itself, and what is told already.
@@ -70,6 +98,7 @@ struct Notebook {
     tool: u32,
     told: BTreeMap<&'static str, BTreeSet<(u32, u32)>>,
     findings: Vec<Diagnostic>,
+    marks: Vec<Mark>,
 }
 
 impl PartRun {
@@ -96,23 +125,42 @@ impl PartRun {
             tools: given.tools.keys().filter_map(|name| name.parse().ok()).collect(),
             ..Notebook::default()
         };
-        let tools = setup.tools()?;
-        for (station, tool) in &tools {
-            let body = tool.body.clone().filter(|_| notebook.tools.contains(station));
-            machining.set_tool(*station, &ToolShape { cutting: tool.cutting.clone(), body });
+        let mut tools = BTreeMap::new();
+        for (station, tool) in setup.tools()? {
+            let body = tool.body.filter(|_| notebook.tools.contains(&station));
+            tools.insert(station, ToolShape { cutting: tool.cutting, body });
         }
         // What moves before any tool is called is the first tool's doing, as it was when the setup was inferred.
         if let Some((_, tool)) = tools.first_key_value() {
-            machining.set_tool(0, &ToolShape { cutting: tool.cutting.clone(), body: None });
+            tools.insert(0, ToolShape { cutting: tool.cutting.clone(), body: None });
         }
+        tools.iter().for_each(|(station, tool)| machining.set_tool(*station, tool));
+        let mut obstacles = Vec::new();
         if let Some(chuck) = setup.chuck_outlines()? {
-            machining.add_obstacle(Obstacle::Jaws, &chuck.jaw).map_err(no_section)?;
-            machining.add_obstacle(Obstacle::Chuck, &chuck.body).map_err(no_section)?;
+            obstacles.extend([(Obstacle::Jaws, chuck.jaw), (Obstacle::Chuck, chuck.body)]);
         }
-        if let Some(tailstock) = setup.tailstock_outline()? {
-            machining.add_obstacle(Obstacle::Tailstock, &tailstock).map_err(no_section)?;
+        obstacles.extend(setup.tailstock_outline()?.map(|outline| (Obstacle::Tailstock, outline)));
+        for (obstacle, outline) in &obstacles {
+            machining.add_obstacle(*obstacle, outline).map_err(no_section)?;
         }
-        Ok(Some(Self { machining, stock, moves: 0, commands: 0, is_full: false, notebook }))
+        Ok(Some(Self {
+            machining,
+            stock,
+            moves: 0,
+            commands: 0,
+            is_full: false,
+            notebook,
+            history: None,
+            tools,
+            obstacles,
+        }))
+    }
+
+    /// Keeps the section along the program.
+    #[must_use]
+    pub fn with_history(mut self) -> Self {
+        self.history = Some(History::new(self.machining.section()));
+        self
     }
 
     /// Cuts a command out of the stock; what it took away, unless nothing more is cut.
@@ -125,8 +173,14 @@ impl PartRun {
             Action::Tool { tool, .. } => self.notebook.tool = tool,
             _ => {}
         }
-        let Self { machining, notebook, .. } = self;
-        let removed = machining.advance(command, &mut |event| notebook.tell(&event));
+        let Self { machining, notebook, history, commands, .. } = self;
+        let removed = machining.advance(command, &mut |event| notebook.tell(&event, *commands));
+        if let Some(history) = history {
+            history.add(*commands, &removed, machining.section());
+            if let Some(piece) = machining.take_fallen() {
+                history.add_fallen(*commands, &piece);
+            }
+        }
         self.commands += 1;
         if self.commands.is_multiple_of(COMMANDS_PER_LOOK)
             && (self.moves >= PART_MOVES_MAX || self.machining.section().slab_count() > SLABS_MAX)
@@ -144,12 +198,19 @@ impl PartRun {
     }
 
     /// The program is over.
-    pub fn finish(self) -> Part {
+    pub fn finish(mut self) -> Part {
+        if let Some(history) = &mut self.history {
+            history.finish(self.machining.section());
+        }
         Part {
             section: self.machining.part().clone(),
             stock: self.stock,
             threads: self.machining.threads().to_vec(),
             findings: self.notebook.findings,
+            marks: self.notebook.marks,
+            history: self.history,
+            tools: self.tools,
+            obstacles: self.obstacles,
         }
     }
 }
@@ -160,7 +221,7 @@ fn place_of(origin: &Origin) -> Place {
 }
 
 impl Notebook {
-    fn tell(&mut self, event: &Event) {
+    fn tell(&mut self, event: &Event, command: u64) {
         let has_tool = self.tools.contains(&self.tool);
         let judged = |is_known: bool| if is_known { Severity::Error } else { Severity::Warning };
         let is_drag = event.contact.as_ref().is_some_and(|contact| contact.depth_mm < DRAG_MM);
@@ -189,6 +250,14 @@ impl Notebook {
         }
         let Point { x, z } = event.place;
         let contact = event.contact.as_ref();
+        self.marks.push(Mark {
+            key,
+            line: (SourceId(event.origin.source), event.origin.line),
+            command,
+            place: event.place,
+            depth_mm: contact.map_or(0.0, |contact| contact.depth_mm),
+            bounds: contact.map(|contact| contact.bounds),
+        });
         self.findings.push(
             Diagnostic::new(severity, key)
                 .at(place_of(&event.origin))

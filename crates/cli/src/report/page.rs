@@ -3,10 +3,13 @@
 use std::mem;
 
 use turnwright_export::formats::html::{
-    CycleTable, Fact, OperationRow, Report, ReportDiagnostic, write_html,
+    AssumptionRow, CycleTable, Fact, OperationRow, PlaceMark, Report, ReportDiagnostic, ReportPart,
+    write_html,
 };
 use turnwright_export::passes::Cycle;
 use turnwright_export::path::PathRecorder;
+use turnwright_verify::Assumption;
+use turnwright_verify::part::{Mark, Part};
 
 use super::human::rpm_text;
 use super::{RunReport, TIME_PARTS, assumption_text, estimates, operation_name, picture_language};
@@ -35,12 +38,9 @@ impl RunReport {
             }));
         }
         let [estimated_note_en, estimated_note_zh] = SPEECHES.map(|speech| {
-            let mut sentences: Vec<String> =
+            let sentences: Vec<String> =
                 estimates(&self.measure, speech).map(|(_, sentence)| sentence).collect();
-            let (space, stop) = if speech.language == BOTH[0] { (" ", ".") } else { ("", "。") };
-            let assumed = self.assumptions.iter().map(|one| assumption_text(one, speech) + stop);
-            sentences.extend(assumed);
-            sentences.join(space)
+            sentences.join(if speech.language == BOTH[0] { " " } else { "" })
         });
         let (cycles, dropped) = mem::take(&mut self.passes);
         if dropped > 0 {
@@ -48,6 +48,13 @@ impl RunReport {
                 speech.fill("passes-not-kept", &[("n", &dropped.to_string())])
             }));
         }
+        let assumptions = self.assumptions.iter().map(|one| {
+            let [text_en, text_zh] = SPEECHES.map(|speech| {
+                let own = Assumption { line: None, ..one.clone() };
+                assumption_text(&own, speech)
+            });
+            AssumptionRow { line: one.line.unwrap_or_default(), text_en, text_zh }
+        });
         let report = Report {
             title: self.title(),
             control: self.session.control.name.to_string(),
@@ -56,7 +63,9 @@ impl RunReport {
             program_lines,
             operations: self.page_operations(),
             cycles: cycles.into_iter().map(|cycle| self.page_cycle(cycle)).collect(),
-            diagnostics: self.findings.iter().map(|finding| page_diagnostic(finding, text)).collect(),
+            diagnostics: self.findings.iter().map(|finding| self.page_diagnostic(finding, text)).collect(),
+            assumptions: assumptions.collect(),
+            part: self.page_part(),
             facts,
             estimated_note_en,
             estimated_note_zh,
@@ -106,6 +115,45 @@ impl RunReport {
         CycleTable { cycle, name_en, name_zh, setting_names }
     }
 
+    fn page_diagnostic(&self, finding: &Finding, text: &ProgramText) -> ReportDiagnostic {
+        let messages = SPEECHES[0].messages();
+        let [english, chinese] = BOTH.map(|language| finding.words(messages, language));
+        let spot = finding.spot(Some(text));
+        let (line, column, end_column) =
+            spot.map_or((0, 0, 0), |spot| (spot.line, spot.span.start as u32 + 1, spot.span.end as u32 + 1));
+        ReportDiagnostic {
+            severity: finding.diagnostic.severity,
+            id: finding.id(messages).to_string(),
+            key: finding.diagnostic.key.to_string(),
+            line,
+            column,
+            end_column,
+            message_en: english.message,
+            cause_en: english.cause,
+            remedy_en: english.remedy,
+            message_zh: chinese.message,
+            cause_zh: chinese.cause,
+            remedy_zh: chinese.remedy,
+            mark: self.mark_of(finding),
+        }
+    }
+
+    /// Where in the part a finding is.
+    fn mark_of(&self, finding: &Finding) -> Option<PlaceMark> {
+        let (part, _) = self.part.as_ref()?;
+        let place = finding.diagnostic.place.as_ref()?;
+        let is_it =
+            |mark: &&Mark| mark.key == finding.diagnostic.key && mark.line == (place.source, place.line);
+        let Mark { command, place, depth_mm, bounds, .. } = *part.marks.iter().find(is_it)?;
+        Some(PlaceMark { command, place, depth_mm, bounds })
+    }
+
+    fn page_part(&self) -> Option<ReportPart<'_>> {
+        let (part, shape) = self.part.as_ref()?;
+        let Part { history, stock, tools, obstacles, .. } = part;
+        Some(ReportPart { history: history.as_ref()?, shape, stock, tools, obstacles })
+    }
+
     fn page_facts(&self) -> Vec<Fact> {
         let totals = self.measure.summary.totals();
         let mut facts = vec![fact("machine", |_| self.machine.name.clone())];
@@ -139,28 +187,6 @@ fn clock_face(seconds: f64) -> String {
 fn fact(key: &str, value: impl Fn(Speech) -> String) -> Fact {
     let [label_en, label_zh] = SPEECHES.map(|speech| speech.fill(key, &[]));
     Fact { label_en, label_zh, value: value(SPEECHES[0]) }
-}
-
-fn page_diagnostic(finding: &Finding, text: &ProgramText) -> ReportDiagnostic {
-    let messages = SPEECHES[0].messages();
-    let [english, chinese] = BOTH.map(|language| finding.words(messages, language));
-    let spot = finding.spot(Some(text));
-    let (line, column, end_column) =
-        spot.map_or((0, 0, 0), |spot| (spot.line, spot.span.start as u32 + 1, spot.span.end as u32 + 1));
-    ReportDiagnostic {
-        severity: finding.diagnostic.severity,
-        id: finding.id(messages).to_string(),
-        key: finding.diagnostic.key.to_string(),
-        line,
-        column,
-        end_column,
-        message_en: english.message,
-        cause_en: english.cause,
-        remedy_en: english.remedy,
-        message_zh: chinese.message,
-        cause_zh: chinese.cause,
-        remedy_zh: chinese.remedy,
-    }
 }
 
 /// The program's lines as far as a page can hold them, and whether that is all.

@@ -4,15 +4,18 @@
 //! Look and behaviour are `assets/report.html`, `.css` and the two `.js`; this file only puts the run into them as
 //! JSON, so that no text of a program ever becomes markup. Deliberately not here: choosing words.
 
+mod part;
+
 use serde_json::{Value, json};
 use turnwright_canon::Phase;
 use turnwright_diagnostics::Severity;
 use turnwright_units::write_fixed;
 
+pub use self::part::{PlaceMark, ReportPart};
 use super::svg::{escape_xml, shown_extents};
 use crate::Language;
 use crate::passes::{Cause, Cycle, GivenWord, Pass};
-use crate::path::{Advance, PathRecorder, SegmentKind};
+use crate::path::{Advance, Move, PathRecorder, Segment, SegmentKind};
 use crate::words::{REPORT_TEXTS, Words};
 
 /// Segments in one report; about 20 MB of HTML. The report says when there are more.
@@ -20,12 +23,17 @@ pub const REPORT_SEGMENTS_MAX: usize = 300_000;
 
 const TEMPLATE: &str = include_str!("../../assets/report.html");
 const STYLE: &str = include_str!("../../assets/report.css");
-const SCRIPT: &str =
-    concat!(include_str!("../../assets/report-path.js"), include_str!("../../assets/report.js"));
+const SCRIPT: &str = concat!(
+    include_str!("../../assets/report-path.js"),
+    include_str!("../../assets/report-part.js"),
+    include_str!("../../assets/report-drawing.js"),
+    include_str!("../../assets/report-tables.js"),
+    include_str!("../../assets/report.js")
+);
 
 /// What the report says around the path.
 #[derive(Clone, Debug, Default)]
-pub struct Report {
+pub struct Report<'a> {
     /// Heading, usually the file's name.
     pub title: String,
     /// Name of the control.
@@ -44,6 +52,10 @@ pub struct Report {
     pub diagnostics: Vec<ReportDiagnostic>,
     /// Anything else worth knowing, in order.
     pub facts: Vec<Fact>,
+    /// What was assumed of stock and tools: sentences, and the lines they are from, 0 for none.
+    pub assumptions: Vec<AssumptionRow>,
+    /// The part that comes out, where there is stock.
+    pub part: Option<ReportPart<'a>>,
     /// What the times rest on, English; may be empty.
     pub estimated_note_en: String,
     /// What the times rest on, Chinese; may be empty.
@@ -77,6 +89,17 @@ pub struct OperationRow {
     pub rapid_mm: f64,
     /// Time.
     pub seconds: f64,
+}
+
+/// Something that was assumed.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct AssumptionRow {
+    /// Line from 1, 0 when it comes from no line.
+    pub line: u32,
+    /// The sentence, English.
+    pub text_en: String,
+    /// The sentence, Chinese.
+    pub text_zh: String,
 }
 
 /// A cycle with the words that only the control knows.
@@ -119,6 +142,8 @@ pub struct ReportDiagnostic {
     pub cause_zh: String,
     /// Remedy, Chinese.
     pub remedy_zh: String,
+    /// Where in the section.
+    pub mark: Option<PlaceMark>,
 }
 
 /// A fact in a row of its own.
@@ -139,7 +164,7 @@ impl From<(String, String, String)> for Fact {
 }
 
 /// The report as one HTML text.
-pub fn write_html(path: &PathRecorder, report: &Report) -> String {
+pub fn write_html(path: &PathRecorder, report: &Report<'_>) -> String {
     let run = run_json(path, report);
     let mut html = String::with_capacity(run.len() + TEMPLATE.len() + STYLE.len() + SCRIPT.len() + 16_384);
     // Each place of the template is filled once; what is filled in is never searched again.
@@ -153,6 +178,10 @@ pub fn write_html(path: &PathRecorder, report: &Report) -> String {
             "control" => html.push_str(&escape_xml(&report.control)),
             "control_reason" => html.push_str(&escape_xml(&report.control_reason)),
             "no_script" => html.push_str(&escape_xml(Words::new(report.language).get("no-script"))),
+            "no_script_part" => {
+                let drawing = report.part.as_ref().map(|part| part.drawing(&report.title, report.language));
+                html.push_str(drawing.as_deref().unwrap_or_default());
+            }
             "style" => html.push_str(STYLE),
             "script" => html.push_str(SCRIPT),
             "texts" => html.push_str(&inert_json(REPORT_TEXTS)),
@@ -170,7 +199,8 @@ fn inert_json(json: &str) -> String {
     json.replace('<', "\\u003c")
 }
 
-fn run_json(path: &PathRecorder, report: &Report) -> String {
+fn run_json(path: &PathRecorder, report: &Report<'_>) -> String {
+    let kept = kept(path);
     let both = |en: &str, zh: &str| json!({ "en": en, "zh": zh });
     let operations: Vec<Value> = report
         .operations
@@ -193,6 +223,7 @@ fn run_json(path: &PathRecorder, report: &Report) -> String {
                 "from": utf16_column(text, found.column), "to": utf16_column(text, found.end_column),
                 "message": both(&found.message_en, &found.message_zh), "cause": both(&found.cause_en, &found.cause_zh),
                 "remedy": both(&found.remedy_en, &found.remedy_zh),
+                "mark": found.mark.map(|mark| mark.json(kept.moves)),
             })
         })
         .collect();
@@ -203,15 +234,24 @@ fn run_json(path: &PathRecorder, report: &Report) -> String {
         .iter()
         .map(|fact| json!({ "label": both(&fact.label_en, &fact.label_zh), "value": fact.value }))
         .collect();
+    let assumptions: Vec<Value> = report
+        .assumptions
+        .iter()
+        .map(|one| json!({ "line": one.line, "text": both(&one.text_en, &one.text_zh) }))
+        .collect();
     let head = json!({
-        "language": report.language.tag(), "program": report.program_lines, "operations": operations,
+        "assumptions": assumptions, "language": report.language.tag(), "program": report.program_lines, "operations": operations,
         "cycles": cycles, "diagnostics": diagnostics, "facts": facts,
         "note": both(&report.estimated_note_en, &report.estimated_note_zh),
     });
     let mut json = inert_json(&head.to_string());
     json.truncate(json.len() - 1);
     json.push_str(",\n\"path\":");
-    json.push_str(&path_json(path, report.source));
+    json.push_str(&path_json(path, &kept, report.source));
+    if let Some(part) = &report.part {
+        json.push_str(",\n\"part\":");
+        json.push_str(&part.json(kept.moves));
+    }
     json.push('}');
     json
 }
@@ -298,11 +338,30 @@ impl Column {
     fn push_mm(&mut self, value: f32) {
         self.push((f64::from(value) * 1e4).round() as i64, 4);
     }
+
+    /// A length in millimetres to the nanometre.
+    fn push_nm(&mut self, mm: f64) {
+        self.push((mm * 1e6).round() as i64, 6);
+    }
+
+    /// Adds it to an object that is being written.
+    fn write(&self, name: &str, out: &mut String) {
+        out.push_str(",\n\"");
+        out.push_str(name);
+        out.push_str("\":[");
+        out.push_str(std::str::from_utf8(&self.0).unwrap_or_default());
+        out.push(']');
+    }
 }
 
-/// The path as columns; the script's first page says what each is. Zero means "none" in the columns that
-/// count from 1.
-fn path_json(path: &PathRecorder, source: u32) -> String {
+/// What of a path is in the report: all of it, or whole moves up to the limit.
+struct Kept<'a> {
+    moves: &'a [Move],
+    segments: &'a [Segment],
+    incomplete: bool,
+}
+
+fn kept(path: &PathRecorder) -> Kept<'_> {
     let segments = path.segments();
     let moves_kept = path.moves().partition_point(|one| (one.segment_first as usize) < REPORT_SEGMENTS_MAX);
     // A move at the limit with a corner would lose its second half.
@@ -310,8 +369,13 @@ fn path_json(path: &PathRecorder, source: u32) -> String {
     let moves_kept = if segments.len() > REPORT_SEGMENTS_MAX { moves_kept - 1 } else { moves_kept };
     let segments_kept =
         path.moves().get(moves_kept).map_or(segments.len(), |next| next.segment_first as usize);
-    let (moves, segments) = (&path.moves()[..moves_kept], &segments[..segments_kept]);
+    Kept { moves: &path.moves()[..moves_kept], segments: &segments[..segments_kept], incomplete }
+}
 
+/// The path as columns; the script's first page says what each is. Zero means "none" in the columns that
+/// count from 1.
+fn path_json(path: &PathRecorder, kept: &Kept<'_>, source: u32) -> String {
+    let Kept { moves, segments, incomplete } = *kept;
     let [mut ends, mut jumps, mut arcs] = [const { Column(Vec::new()) }; 3];
     let mut pen = None;
     for (index, segment) in segments.iter().enumerate() {
@@ -334,7 +398,15 @@ fn path_json(path: &PathRecorder, source: u32) -> String {
     let mut labels = Vec::new();
     let [mut first, mut kind, mut line, mut figure, mut cycle, mut pass] = [const { Column(Vec::new()) }; 6];
     let [mut phase, mut tool, mut advance, mut unit, mut elapsed] = [const { Column(Vec::new()) }; 5];
-    for one in moves {
+    let (mut waits, mut before_s) = (Column::default(), 0.0);
+    for (index, one) in moves.iter().enumerate() {
+        // Dwells, tool changes and whatever else passes before the tool moves.
+        let wait_ms = ((one.elapsed_s - f64::from(one.seconds) - before_s) * 1e3).round() as i64;
+        if wait_ms > 0 {
+            waits.push_whole(index as i64);
+            waits.push(wait_ms, 3);
+        }
+        before_s = one.elapsed_s;
         let here = one.source == source;
         first.push_whole(one.segment_first);
         kind.push_whole(kind_number(segments[one.segment_first as usize].kind));
@@ -386,12 +458,9 @@ fn path_json(path: &PathRecorder, source: u32) -> String {
         ("advance", advance),
         ("unit", unit),
         ("elapsed", elapsed),
+        ("waits", waits),
     ] {
-        out.push_str(",\n\"");
-        out.push_str(name);
-        out.push_str("\":[");
-        out.push_str(std::str::from_utf8(&column.0).unwrap_or_default());
-        out.push(']');
+        column.write(name, &mut out);
     }
     out.push('}');
     out
@@ -459,7 +528,7 @@ mod tests {
         serde_json::from_str(run).expect("JSON")
     }
 
-    fn hostile() -> Report {
+    fn hostile() -> Report<'static> {
         let evil = "</script><script>alert(1)</script><!-- {{run}} {{script}} & \u{0}\u{2028}\" '".to_owned();
         Report {
             title: evil.clone(),
@@ -508,7 +577,9 @@ mod tests {
                 message_zh: evil.clone(),
                 cause_zh: evil.clone(),
                 remedy_zh: evil.clone(),
+                mark: None,
             }],
+            assumptions: vec![AssumptionRow { line: 1, text_en: evil.clone(), text_zh: evil.clone() }],
             ..Report::default()
         }
     }
@@ -567,6 +638,21 @@ mod tests {
         assert_eq!(path["jumps"], json!([0, 50, 100]));
         assert_eq!(path["elapsed"][4], 2.5);
         assert_eq!(path["incomplete"], false);
+    }
+
+    #[test]
+    fn what_passes_before_a_move_is_told_apart() {
+        let mut path = recorded(1);
+        let dwell = Action::Dwell(turnwright_canon::Dwell::Time(turnwright_units::Seconds(2.0)));
+        path.add(&Command::new(dwell, Origin::line(1)), 2.0);
+        let to = at(80, 7);
+        path.add(
+            &Command::new(Action::Rapid { to, path: RapidPath::Straight, others: None }, Origin::line(1)),
+            0.25,
+        );
+        let run = run_of(&write_html(&path, &Report::default()));
+        assert_eq!(run["path"]["waits"], json!([1, 2]));
+        assert_eq!(run["path"]["elapsed"], json!([0.5, 2.75]));
     }
 
     #[test]

@@ -70,6 +70,8 @@ pub struct Machining {
     section: Section,
     /// What came off in front of all that is held.
     cut_off: Option<Section>,
+    /// What came off last, until it is taken.
+    fallen: Option<Section>,
     /// Z of the end that the chuck holds.
     held_z: f64,
     tools: BTreeMap<u32, Tool>,
@@ -94,6 +96,7 @@ impl Machining {
             held_z: section.bounds().map_or(0.0, |bounds| bounds.min.z),
             section,
             cut_off: None,
+            fallen: None,
             tools: BTreeMap::new(),
             obstacles: Vec::new(),
             rates,
@@ -133,6 +136,11 @@ impl Machining {
     /// nothing was.
     pub fn part(&self) -> &Section {
         self.cut_off.as_ref().unwrap_or(&self.section)
+    }
+
+    /// What came off since the last time this was asked, at the place where it was; a pip is not told.
+    pub const fn take_fallen(&mut self) -> Option<Section> {
+        self.fallen.take()
     }
 
     /// The threads cut so far.
@@ -335,7 +343,10 @@ impl Machining {
         let least_mm3 = PIP_SHARE * self.section.volume_mm3();
         let most_mm3 = self.cut_off.as_ref().map_or(least_mm3, Section::volume_mm3);
         if is_in_front && fallen.volume_mm3() > most_mm3 {
-            self.cut_off = Some(fallen);
+            self.cut_off = Some(fallen.clone());
+        }
+        if fallen.volume_mm3() > least_mm3 {
+            self.fallen = Some(fallen);
         }
     }
 }

@@ -1,0 +1,248 @@
+// The part in the report, in a real headless Chromium: the stock along the time slider, the marks of what was found, the
+// sizes and the assumptions, the view in space.
+//
+// TURNWRIGHT           path of the program to make the reports with; without it cargo runs it
+// TURNWRIGHT_CHROMIUM  path of the browser, /usr/bin/chromium without it
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, rmSync, writeFileSync, statSync } from "node:fs";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import { after, afterEach, before, test } from "node:test";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const ROOT = path.join(path.dirname(fileURLToPath(import.meta.url)), "..");
+const BROWSER = process.env.TURNWRIGHT_CHROMIUM ?? "/usr/bin/chromium";
+const ARGUMENTS = ["--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+  "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+
+// A bar of 50 is turned to a drawing of 20, a cone, an arc and 40; then a rapid goes 5 mm into the shoulder (line 20), and
+// the part is cut off at Z-50 with a blade of 3.
+const DRAWN = `O7001
+(CONTROL fanuc-0i-tf)
+(SETUP STOCK D50 L80)
+(SETUP TOOL 1 CNMG120404 PCLNR2525M12)
+(SETUP TOOL 2 CUT-OFF W3)
+(SETUP CHUCK D160)
+T0101
+G97 S800 M3
+G0 X52. Z2.
+G71 U2. R0.5
+G71 P10 Q20 U0.4 W0.1 F0.25
+N10 G0 X20.
+G1 Z-20. F0.15
+X30. Z-30.
+G2 X40. Z-35. R5.
+G1 Z-45.
+N20 X52.
+G70 P10 Q20
+G0 X30. Z-20.
+Z-40.
+X100.
+Z50.
+T0202
+G0 X54. Z-50.
+G75 R0.3
+G75 X-1. P2000 F0.08
+G0 X100. Z50.
+M30
+`;
+// Nothing is said of stock and tools.
+const BARE = DRAWN.split("\n").filter((line) => !line.startsWith("(SETUP")).join("\n");
+
+let folder, browser, page;
+let complaints = [], requests = [];
+
+const reportOf = (name, text, ...options) => {
+  const file = path.join(folder, `${name}.nc`), out = path.join(folder, name);
+  writeFileSync(file, text);
+  const program = process.env.TURNWRIGHT
+    ? [process.env.TURNWRIGHT] : [process.env.CARGO ?? "cargo", "run", "--quiet", "-p", "turnwright", "--"];
+  try {
+    execFileSync(program[0], [...program.slice(1), "run", file, "--out", out, ...options], { cwd: ROOT, stdio: ["ignore", "ignore", "pipe"] });
+  } catch (error) {
+    // 1 says that something was found, which is what is wanted.
+    if (error.status !== 1) throw error;
+  }
+  return path.join(out, "report.html");
+};
+
+const open = async (report, options = {}) => {
+  const context = await browser.newContext({ viewport: { width: 1300, height: 900 }, colorScheme: "light", ...options });
+  complaints = [];
+  requests = [];
+  page = await context.newPage();
+  page.on("console", (message) => complaints.push(message.text()));
+  page.on("pageerror", (error) => complaints.push(error.stack));
+  page.on("request", (request) => requests.push(request.url()));
+  await page.goto(pathToFileURL(report).href);
+};
+
+let drawn, bare;
+before(async () => {
+  folder = mkdtempSync(path.join(tmpdir(), "turnwright-part-"));
+  drawn = reportOf("drawn", DRAWN);
+  bare = reportOf("bare", BARE);
+  browser = await chromium.launch({ executablePath: BROWSER, args: ARGUMENTS });
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+afterEach(async () => {
+  assert.deepEqual(complaints.filter((text) => !/GPU stall|Automatic fallback/.test(text)), [], "the page complains of nothing");
+  assert.equal(requests.filter((url) => !url.startsWith("data:")).length, requests.length > 0 ? 1 : 0, "one file, nothing beside it");
+  await page?.context().close();
+  page = undefined;
+});
+
+const at = (z) => page.evaluate((z) => turnwright.diametersAt(z), z);
+const near = (found, wanted, what, slack = 1e-4) => {
+  assert.equal(found.length, wanted.length, `${what}: ${JSON.stringify(found)}`);
+  wanted.forEach((ring, n) => ring.forEach((size, side) => assert.ok(Math.abs(found[n][side] - size) < slack, `${what}: ${JSON.stringify(found)}`)));
+};
+const settle = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+const painted = (layer) => page.evaluate((id) => {
+  const canvas = document.getElementById(id);
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  let count = 0;
+  for (let i = 3; i < data.length; i += 4) if (data[i] > 0) count++;
+  return count;
+}, layer);
+
+test("the slider leads from the bar to the part of the drawing", async () => {
+  await open(drawn);
+  await page.fill("#position", "0");
+  for (const z of [-1, -25, -44, -79]) near(await at(z), [[0, 50]], `the bar at Z${z}`);
+  const bar = await page.evaluate(() => turnwright.sectionArea);
+  assert.ok(Math.abs(bar - 25 * 80) < 1e-6, `${bar}`);
+  // After finishing, line 18: the drawing, but for what the nose leaves in corners.
+  const done = await page.evaluate(() => { const all = turnwright.linesOfMoves(); return all.lastIndexOf(18) + 1; });
+  await page.evaluate((step) => turnwright.goTo(step), done);
+  near(await at(-10), [[0, 20]], "the pin");
+  near(await at(-25), [[0, 25]], "the cone", 0.5);
+  near(await at(-40), [[0, 40]], "the shoulder");
+  near(await at(-60), [[0, 50]], "the bar");
+  const text = await page.textContent("#sizes");
+  assert.match(text, /⌀20/);
+  assert.match(text, /⌀50 × 47/);
+});
+
+test("on the way a cut is taken away as far as the tool has come", async () => {
+  await open(drawn);
+  // The first roughing pass along Z: halfway its front half is done.
+  const [start, end] = await page.evaluate(() => {
+    const all = turnwright.linesOfMoves();
+    for (let step = all.indexOf(11); ; step++) {
+      turnwright.goTo(step);
+      const before = turnwright.sectionArea;
+      turnwright.goTo(step + 1);
+      if (turnwright.sectionArea < before - 10) { const end = turnwright.time; turnwright.goTo(step); return [turnwright.time, end]; }
+    }
+  });
+  const area = (time) => page.evaluate((time) => { turnwright.goToTime(time); return turnwright.sectionArea; }, time);
+  const areas = [await area(start)];
+  for (const share of [0.25, 0.5, 0.75, 0.999999]) areas.push(await area(start + share * (end - start)));
+  areas.push(await area(end));
+  for (let n = 1; n < areas.length; n++) assert.ok(areas[n] <= areas[n - 1] + 1e-9, `ever less: ${areas}`);
+  const share = (areas[0] - areas[2]) / (areas[0] - areas[5]);
+  assert.ok(share > 0.4 && share < 0.6, `half the time, half the chips: ${areas}`);
+  assert.ok(Math.abs(areas[4] - areas[5]) < 0.2, `nothing jumps at the end: ${areas}`);
+  // Back and forth makes no difference.
+  assert.ok(Math.abs((await area(start)) - areas[0]) < 1e-9);
+  assert.ok(Math.abs((await area(end)) - areas[5]) < 1e-9);
+});
+
+test("the block that runs is lit, and a click on a block goes to its moment", async () => {
+  await open(drawn);
+  const moments = await page.evaluate(() => [0.1, 0.3, 0.5, 0.7, 0.9].map((share) => {
+    turnwright.goToTime(share * turnwright.totalTime);
+    return { line: turnwright.currentLine, row: Number(document.querySelector(".row.current")?.dataset.line) };
+  }));
+  for (const { line, row } of moments) assert.equal(row, line);
+  assert.ok(new Set(moments.map(({ line }) => line)).size > 1);
+  await page.click("#line-24");
+  assert.equal(await page.evaluate(() => turnwright.currentLine), 24);
+  near(await at(-10), [[0, 20]], "the pin is turned by then");
+});
+
+test("playing takes the stock away and ends with the part", async () => {
+  await open(drawn);
+  await page.selectOption("#speed", "100");
+  await page.focus("#picture");
+  await page.keyboard.press("Home");
+  const before = await page.evaluate(() => turnwright.sectionArea);
+  await page.keyboard.press("Space");
+  await page.waitForFunction(() => turnwright.time > 30);
+  await page.keyboard.press("Space");
+  const paused = await page.evaluate(() => [turnwright.playing, turnwright.time, turnwright.sectionArea]);
+  assert.equal(paused[0], false);
+  assert.ok(paused[2] < before);
+  await settle();
+  assert.equal(await page.evaluate(() => turnwright.time), paused[1], "a pause stays where it is");
+  await page.selectOption("#speed", "1000");
+  await page.focus("#picture");
+  await page.keyboard.press("Space");
+  await page.waitForFunction(() => turnwright.step === turnwright.steps && !turnwright.playing);
+});
+
+test("a crash is marked in the picture, and its mark leads to the finding", async () => {
+  await open(drawn);
+  const finding = page.locator("#diagnostics .found.error", { hasText: "T350" });
+  assert.match(await finding.textContent(), /into the stock at rapid, at X[\d.]+ Z-/);
+  const before = await painted("layer-marks");
+  assert.ok(before > 200, "marks are drawn at the end too");
+  await finding.locator(".link", { hasText: "show the place" }).click();
+  assert.equal(await page.evaluate(() => turnwright.currentLine), 20);
+  const marks = await page.evaluate(() => turnwright.marks());
+  const mark = marks.find((one) => one.finding === 0) ?? marks[0];
+  await page.keyboard.press("End");
+  await page.evaluate(() => scrollTo(0, 0));
+  const { x, y } = (await page.evaluate(() => turnwright.marks())).find((one) => one.finding === mark.finding);
+  await page.mouse.move(x, y);
+  assert.match(await page.textContent("#hover"), /T350/);
+  await page.mouse.click(x, y);
+  assert.equal(await page.evaluate(() => turnwright.currentLine), 20, "a click on the mark goes there too");
+});
+
+test("the piece that is cut off stays in the picture, and is no material any more", async () => {
+  await open(drawn);
+  await page.keyboard.press("End");
+  near(await at(-10), [], "the part has fallen");
+  near(await at(-60), [[0, 50]], "the stub is held");
+  const all = await painted("layer-stock");
+  assert.match(await page.textContent("#diagnostics"), /comes off/);
+  assert.ok(all > 10000);
+});
+
+test("without a setup the stock is inferred, and every assumption is told", async () => {
+  await open(bare);
+  const told = await page.$$eval("#assumptions li", (all) => all.map((one) => one.textContent));
+  assert.ok(told.length >= 4, told.join("|"));
+  assert.ok(told.some((text) => /Stock: 5[024] mm/.test(text)), told.join("|"));
+  await page.click("#assumptions .link");
+  assert.ok((await page.evaluate(() => turnwright.selectedLine)) > 0);
+  await page.fill("#position", "0");
+  assert.equal((await at(-10)).length, 1, "there is a bar");
+  assert.equal(await page.locator("#diagnostics .found.error").count(), 0, "of an assumed bar no crash is told");
+});
+
+test("the page in Chinese: nothing of the part stays English", async () => {
+  await open(drawn);
+  const texts = () => page.$$eval("#sizes th, #views button, #assumptions li, .legend li, .found .link, .found p", (all) => all.map((one) => one.textContent).filter((text) => text));
+  const english = await texts();
+  await page.keyboard.press("l");
+  const chinese = await texts();
+  assert.equal(chinese.length, english.length);
+  assert.deepEqual(chinese.filter((text, n) => text === english[n]), []);
+  assert.match(await page.textContent("#sizes"), /外圆/);
+});
+
+test("without scripts the page shows the finished part and says what is missing", async () => {
+  await open(drawn, { javaScriptEnabled: false });
+  assert.match(await page.textContent("noscript"), /needs scripts/);
+  assert.ok((await page.locator("noscript svg").boundingBox()).width > 300);
+});
