@@ -1,7 +1,9 @@
 //! What the machine of a setup can do, for the motion crate.
 
 use turnwright_control::{Machine, Parameters};
-use turnwright_motion::{AuxiliaryTimes, AxisDynamics, Dynamics, MachineRates, RapidSurfaceSpeed};
+use turnwright_motion::{
+    AccDec, AuxiliaryTimes, AxisDynamics, Dynamics, MachineRates, Orientation, RapidSurfaceSpeed, SpeedWait,
+};
 use turnwright_units::Rpm;
 
 /// Rates, times, acceleration and jerk.
@@ -24,6 +26,11 @@ pub(crate) fn rates(machine: &Machine, parameters: &Parameters, stops_optionally
         spindle_ramp_rpm_per_s: machine.spindle_ramp_rpm_per_s,
         auxiliary_s: machine.auxiliary_s,
         auxiliary_times: AuxiliaryTimes::new(machine.auxiliary_times()),
+        speed_wait: match machine.speed_wait {
+            turnwright_control::SpeedWait::Order => SpeedWait::Order,
+            turnwright_control::SpeedWait::Cut => SpeedWait::Cut,
+        },
+        orientation: machine.orientation_m.map(|code| Orientation { code, seconds: machine.orientation_s }),
         stop_s: machine.stop_s,
         optional_stop_s: if stops_optionally { machine.stop_s } else { 0.0 },
         loading_s: machine.loading_s + machine.bar_feed_s,
@@ -49,5 +56,10 @@ fn dynamics(machine: &Machine) -> Dynamics {
     let c = axes.c.as_ref().map_or(usual_c, |c| axis(c.acceleration_deg_per_s2, c.jerk_deg_per_s3));
     let b = axes.b.as_ref().map_or(usual_b, |b| axis(b.acceleration_deg_per_s2, b.jerk_deg_per_s3));
     // A virtual axis is made by X and the rotary axis: it is taken to be no quicker than X.
-    Dynamics { axes: [x, z, y, c, b, x], corner_s: machine.corner_s, in_position_s: machine.in_position_s }
+    let acc_dec = match machine.acc_dec {
+        turnwright_control::AccDec::Before => AccDec::Before,
+        turnwright_control::AccDec::After => AccDec::After,
+    };
+    let (corner_s, in_position_s) = (machine.corner_s, machine.in_position_s);
+    Dynamics { acc_dec, axes: [x, z, y, c, b, x], corner_s, in_position_s }
 }

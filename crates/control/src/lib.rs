@@ -39,8 +39,8 @@ pub use parameter_text::{
 };
 pub use parameters::{Acts, Axis, Parameter, ParameterFault, Parameters, UnderNumber};
 pub use setup::{
-    AxisPair, CheckSwitches, LinearAxis, Machine, MachineAxes, Mode, Offset, OffsetRow, RotaryAxis, Setup,
-    SetupFault, ZeroRow, machine_names,
+    AUXILIARY_TIMES_MAX, AccDec, AxisPair, CheckSwitches, LinearAxis, Machine, MachineAxes, Mode, Offset,
+    OffsetRow, RotaryAxis, Setup, SetupFault, SpeedWait, ZeroRow, machine_names,
 };
 pub use setup_comment::setup_comment;
 pub use setup_text::setup_key_words;

@@ -75,6 +75,9 @@ pub struct Machine {
     pub jerk_x_mm_per_s3: f64,
     pub jerk_z_mm_per_s3: f64,
     pub corner_s: f64,
+    /// Where cutting moves get their acceleration.
+    #[serde(default)]
+    pub acc_dec: AccDec,
     pub in_position_s: f64,
     pub tool_change_s: f64,
     pub spindle_ramp_rpm_per_s: f64,
@@ -82,6 +85,15 @@ pub struct Machine {
     /// M codes that take another time, by number.
     #[serde(default)]
     pub auxiliary_m_s: BTreeMap<String, f64>,
+    /// Who waits until the spindle has its speed.
+    #[serde(default)]
+    pub speed_wait: SpeedWait,
+    /// The M code that stops the spindle at an angle.
+    #[serde(default)]
+    pub orientation_m: Option<u32>,
+    /// From standstill to that angle.
+    #[serde(default)]
+    pub orientation_s: f64,
     /// Until the operator presses cycle start after M00, and after M01 where that stops.
     #[serde(default)]
     pub stop_s: f64,
@@ -98,6 +110,28 @@ pub struct Machine {
     pub live_tool_rpm_max: Option<u32>,
     #[serde(default)]
     pub axes: MachineAxes,
+}
+
+/// Where cutting moves get their acceleration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AccDec {
+    /// Before interpolation: the path is kept.
+    #[default]
+    Before,
+    /// After interpolation: each axis comes behind, corners are cut short.
+    After,
+}
+
+/// Who waits until the spindle has its speed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SpeedWait {
+    /// The block that orders it.
+    #[default]
+    Order,
+    /// The next cut.
+    Cut,
 }
 
 /// The axes that a machine has beyond X and Z.
@@ -454,6 +488,34 @@ impl Machine {
         if let Some(rate) = of_axis("rapid-rate", Axis::Z) {
             self.rapid_z_mm_per_min = rate;
         }
+        // The time in which a rapid comes to its rate, and the time in which its acceleration builds up.
+        let per_s =
+            |axis, rate: f64| of_axis("rapid-time-constant", axis).map(|ms: f64| rate / 60.0 / (ms / 1e3));
+        let builds_up = |axis, acceleration: f64| {
+            of_axis("rapid-time-constant-bell", axis).map(|ms: f64| acceleration / (ms / 1e3))
+        };
+        for (axis, rate, acceleration, jerk) in [
+            (
+                Axis::X,
+                self.rapid_x_mm_per_min,
+                &mut self.acceleration_x_mm_per_s2,
+                &mut self.jerk_x_mm_per_s3,
+            ),
+            (
+                Axis::Z,
+                self.rapid_z_mm_per_min,
+                &mut self.acceleration_z_mm_per_s2,
+                &mut self.jerk_z_mm_per_s3,
+            ),
+        ] {
+            *acceleration = per_s(axis, rate).unwrap_or(*acceleration);
+            *jerk = builds_up(axis, *acceleration).unwrap_or(*jerk);
+        }
+        // Each axis is averaged twice: half of the time constant each. One time holds for the path.
+        let of_cuts = Axis::TURNING.into_iter().filter_map(|axis| of_axis("cutting-time-constant", axis));
+        if let Some(ms) = of_cuts.reduce(f64::max) {
+            self.corner_s = (ms / 2e3).min(1.0);
+        }
         if let Some(feed) = set("cutting-feed-maximum") {
             self.cutting_max_mm_per_min = feed;
         }
@@ -496,6 +558,7 @@ impl Machine {
         let times = [
             ("tool_change_s", self.tool_change_s),
             ("auxiliary_s", self.auxiliary_s),
+            ("orientation_s", self.orientation_s),
             ("stop_s", self.stop_s),
             ("loading_s", self.loading_s),
             ("bar_feed_s", self.bar_feed_s),
@@ -843,6 +906,13 @@ mod tests {
         assert_eq!(axes.c.map(|axis| axis.rapid_deg_per_min), Some(720.0));
         assert_eq!(axes.y.map(|axis| axis.rapid_mm_per_min), Some(500.0));
         assert_eq!(axes.b.map(|axis| axis.cutting_max_deg_per_min), Some(90.0));
+        for (number, value) in [("1420.X", "12000"), ("1620.X", "100"), ("1621.X", "50"), ("1622.Z", "64")] {
+            parameters.set(number, value).expect(number);
+        }
+        let machine = Setup::default().machine().expect("machine").limited_by(&parameters);
+        // 200 mm/s in 100 ms; the acceleration builds up in 50 ms.
+        assert_eq!((machine.acceleration_x_mm_per_s2, machine.jerk_x_mm_per_s3), (2000.0, 40_000.0));
+        assert_eq!((machine.acceleration_z_mm_per_s2, machine.corner_s), (3000.0, 0.032));
         let setup = Setup::parse("[axes.y]\nnumber = 3\nrapid_mm_per_min = 0.0\n").expect("setup");
         assert!(setup.machine().is_err());
         for name in machine_names() {

@@ -16,7 +16,7 @@ use crate::path::{ArcPath, point, stretches};
 use crate::spindle::{Order, Spindle};
 use crate::surface::Slowness;
 use crate::totals::{Kind, SECONDS_MAX, Totals};
-use crate::{MachineRates, RapidSurfaceSpeed};
+use crate::{MachineRates, RapidSurfaceSpeed, SpeedWait};
 
 /// The spindle speeds of a move, rpm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,7 +157,8 @@ impl Clock {
             Action::Spindle { state, speed, rpm_max } => {
                 self.spindle.command(*state, *speed, *rpm_max, &self.rates);
                 self.spindle.aim(self.spindle.order.rpm_at(self.position.x.to_mm()));
-                self.still(Kind::Spindle, self.spindle.seconds_to_target())
+                let waits = self.rates.speed_wait == SpeedWait::Order;
+                self.still(Kind::Spindle, if waits { self.spindle.seconds_to_target() } else { 0.0 })
             }
             Action::Tool { tool, .. } => {
                 // Tool 0 cancels an offset, the turret stays; the first call turns it from where nobody knows.
@@ -167,10 +168,7 @@ impl Clock {
                 }
                 self.still(Kind::ToolChange, if turns { self.rates.tool_change_s } else { 0.0 })
             }
-            Action::Auxiliary { code } => {
-                let seconds = self.rates.auxiliary_times.of(*code).unwrap_or(self.rates.auxiliary_s);
-                self.still(Kind::Other, seconds)
-            }
+            Action::Auxiliary { code } => self.auxiliary(*code),
             Action::Coolant(_) | Action::SecondAuxiliary { .. } => {
                 self.still(Kind::Other, self.rates.auxiliary_s)
             }
@@ -203,6 +201,20 @@ impl Clock {
         }
         self.totals.add(&timing);
         timing
+    }
+
+    /// An auxiliary function: the one that orients the spindle stops it first.
+    fn auxiliary(&mut self, code: u32) -> Timing {
+        match self.rates.orientation {
+            Some(orientation) if orientation.code == code => {
+                self.spindle.stop();
+                self.still(Kind::Spindle, self.spindle.seconds_to_target() + orientation.seconds)
+            }
+            _ => {
+                let seconds = self.rates.auxiliary_times.of(code).unwrap_or(self.rates.auxiliary_s);
+                self.still(Kind::Other, seconds)
+            }
+        }
     }
 
     /// A command that does not move, of so many seconds when that is a time at all.
@@ -429,12 +441,22 @@ impl Clock {
 
     fn dwell(&mut self, dwell: Dwell) -> Timing {
         let rpm = self.spindle.target_rpm();
-        let minutes = match dwell {
-            Dwell::Time(seconds) => Some(seconds.0 / 60.0),
-            Dwell::Turns(turns) => minutes(turns.0, rpm),
+        let (minutes, waited_s) = match dwell {
+            Dwell::Time(seconds) => (Some(seconds.0 / 60.0), 0.0),
+            // Turns are counted at the speed that was asked for.
+            Dwell::Turns(turns) if self.rates.speed_wait == SpeedWait::Cut => {
+                (minutes(turns.0, rpm), self.wait_for(rpm))
+            }
+            Dwell::Turns(turns) => (minutes(turns.0, rpm), 0.0),
         };
         let seconds = self.known_minutes(minutes, 0.0).seconds;
-        Timing { rpm: turning(RpmRange::between(rpm, rpm)), ..self.still(Kind::Dwell, seconds) }
+        let still = self.still(Kind::Dwell, seconds);
+        Timing {
+            rpm: turning(RpmRange::between(rpm, rpm)),
+            seconds: waited_s + still.seconds,
+            waited_s,
+            ..still
+        }
     }
 }
 

@@ -38,9 +38,22 @@ impl AxisDynamics {
 /// The axes in the order of [`crate::leg::Place`].
 pub const AXIS_COUNT: usize = 6;
 
+/// Where cutting moves get their acceleration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AccDec {
+    /// Before interpolation: the path is kept, and its speed follows what the axes can do.
+    #[default]
+    Before,
+    /// After interpolation: the path is given out at its full feed, and each axis comes behind, averaged over twice
+    /// [`Dynamics::corner_s`]. Corners and arcs are cut short as on controls that work so; no speed is held down.
+    After,
+}
+
 /// What the axes of a machine can do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dynamics {
+    /// Where cutting moves get their acceleration.
+    pub acc_dec: AccDec,
     /// X (as a radius), Z, Y, C, B, and the virtual axis of polar and cylindrical interpolation.
     pub axes: [AxisDynamics; AXIS_COUNT],
     /// Seconds over which the axes change their speed at a corner of a cutting path: the longer, the faster corners
@@ -56,6 +69,7 @@ impl Default for Dynamics {
         let axis = |acceleration_per_s2, jerk_per_s3| AxisDynamics { acceleration_per_s2, jerk_per_s3 };
         let (slide, rotary) = (axis(3_000.0, 150_000.0), axis(3_000.0, 60_000.0));
         Self {
+            acc_dec: AccDec::Before,
             axes: [slide, slide, axis(2_000.0, 100_000.0), rotary, axis(1_000.0, 20_000.0), slide],
             corner_s: 0.01,
             in_position_s: 0.02,
@@ -72,6 +86,9 @@ const CORNER: f64 = 0.35;
 const JERK_ALONG: f64 = 0.3;
 const JERK_BENDING: f64 = 0.45;
 const JERK_CORNER: f64 = 0.25;
+
+/// Acceleration after interpolation: before it the path gets its feed as good as at once, mm/s² and mm/s³.
+const AT_ONCE: RunLimits = RunLimits { acceleration_mm_per_s2: 1e6, jerk_mm_per_s3: 1e10 };
 
 /// Share of acceleration and jerk for the ramps of a thread.
 const THREADING: f64 = 0.8;
@@ -114,6 +131,9 @@ impl Dynamics {
 
     /// The limits along a cutting path on X and Z, whatever its direction; of other axes when they move along.
     pub(crate) fn cutting(&self, with_others: bool) -> RunLimits {
+        if self.acc_dec == AccDec::After {
+            return AT_ONCE;
+        }
         let count = if with_others { AXIS_COUNT } else { 2 };
         let least =
             |of: fn(&AxisDynamics) -> f64| self.axes[..count].iter().map(of).fold(f64::INFINITY, f64::min);
@@ -128,6 +148,9 @@ impl Dynamics {
     /// Acceleration towards the centre: v²/r. Jerk: 3·v·a/r while the speed changes by `a`, and v³/r² always; each has
     /// half of the share.
     pub(crate) fn arc_speed(&self, axes: [usize; 2], radius_mm: f64, along: RunLimits) -> f64 {
+        if self.acc_dec == AccDec::After {
+            return f64::INFINITY;
+        }
         let least = |of: fn(&AxisDynamics) -> f64| of(&self.axes[axes[0]]).min(of(&self.axes[axes[1]]));
         let acceleration = BENDING * least(|axis| axis.acceleration_per_s2);
         let jerk = JERK_BENDING / 2.0 * least(|axis| axis.jerk_per_s3);
@@ -143,6 +166,9 @@ impl Dynamics {
     /// The axes are averaged twice over `corner_s`: a change of speed by v·turn takes an acceleration of v·turn/T and
     /// a jerk of v·turn/T², a change of acceleration by v²·bend a jerk of v²·bend/T.
     pub(crate) fn corner_speed(&self, turn: &[f64; AXIS_COUNT], bend: &[f64; AXIS_COUNT]) -> f64 {
+        if self.acc_dec == AccDec::After {
+            return f64::INFINITY;
+        }
         let time = self.corner_s;
         let mut speed = f64::INFINITY;
         for ((axis, turn), bend) in self.axes.iter().zip(turn).zip(bend) {

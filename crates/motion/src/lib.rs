@@ -37,11 +37,11 @@ mod totals;
 
 pub use blocks::{BlockTime, BlockTimes, LINES_MAX, LineTime};
 pub use clock::{Clock, RpmRange, Timing};
-pub use dynamics::{AXIS_COUNT, AxisDynamics, CORNER_S_MAX, Dynamics};
+pub use dynamics::{AXIS_COUNT, AccDec, AxisDynamics, CORNER_S_MAX, Dynamics};
 pub use leg::Place;
 pub use path::ArcPath;
 pub use player::{Panel, Player, Sample};
-pub use rates::{AuxiliaryTimes, MachineRates, RapidSurfaceSpeed};
+pub use rates::{AuxiliaryTimes, MachineRates, Orientation, RapidSurfaceSpeed, SpeedWait};
 pub use run::LEGS_MAX;
 pub use schedule::Schedule;
 pub use spindle::RPM_FENCE;

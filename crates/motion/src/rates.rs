@@ -46,6 +46,25 @@ impl AuxiliaryTimes {
     }
 }
 
+/// Who waits until the spindle has its speed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SpeedWait {
+    /// The block that orders the speed: it is over when the spindle has it.
+    #[default]
+    Order,
+    /// The next cut, thread or dwell in turns; what comes before it goes on while the spindle changes its speed.
+    Cut,
+}
+
+/// The orientation of the spindle by an auxiliary function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orientation {
+    /// The function.
+    pub code: u32,
+    /// From standstill to the angle, seconds.
+    pub seconds: f64,
+}
+
 /// The rates of a machine. X rates are those of the slide: millimetres of radius a minute.
 ///
 /// The default is an assumed small production lathe, the same as `data/machines/generic-lathe.toml`; a setup
@@ -80,6 +99,10 @@ pub struct MachineRates {
     pub optional_stop_s: f64,
     /// A new piece at the end of the program, seconds: bar feed, loading and unloading.
     pub loading_s: f64,
+    /// Who waits for the speed.
+    pub speed_wait: SpeedWait,
+    /// The function that stops the spindle at an angle, if the machine has one.
+    pub orientation: Option<Orientation>,
     /// The spindle turns no faster.
     pub rpm_max: Option<Rpm>,
     /// The spindle turns no slower while it follows the diameter, rpm.
@@ -107,6 +130,8 @@ impl Default for MachineRates {
             stop_s: 0.0,
             optional_stop_s: 0.0,
             loading_s: 0.0,
+            speed_wait: SpeedWait::Order,
+            orientation: None,
             rpm_max: Some(Rpm(4_000)),
             rpm_min_surface: 20,
             rapid_surface_speed: RapidSurfaceSpeed::AtEndPoint,
@@ -133,6 +158,7 @@ impl MachineRates {
             ("spindle_ramp_rpm_per_s", not_negative(self.spindle_ramp_rpm_per_s)),
             ("auxiliary_s", not_negative(self.auxiliary_s)),
             ("auxiliary_times", self.auxiliary_times.times().all(|(_, seconds)| not_negative(seconds))),
+            ("orientation", self.orientation.is_none_or(|orientation| not_negative(orientation.seconds))),
             ("stop_s", not_negative(self.stop_s)),
             ("optional_stop_s", not_negative(self.optional_stop_s)),
             ("loading_s", not_negative(self.loading_s)),

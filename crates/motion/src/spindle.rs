@@ -131,6 +131,12 @@ impl Spindle {
         }
     }
 
+    /// Nothing is asked for until the next order: the spindle is held at an angle.
+    pub(crate) fn stop(&mut self) {
+        self.order = Order::Constant(0.0);
+        self.aim(0.0);
+    }
+
     /// The speed asked for at the moment, rpm.
     pub(crate) fn target_rpm(&self) -> f64 {
         self.target_rpm.abs()

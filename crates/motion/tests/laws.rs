@@ -9,7 +9,7 @@ use turnwright_canon::{
 };
 use turnwright_motion::{
     ArcPath, AuxiliaryTimes, BlockTime, BlockTimes, Clock, Dynamics, Kind, LINES_MAX, MachineRates,
-    RapidSurfaceSpeed, SPIRAL_TOLERANCE, Schedule, Summary, TIME_TOLERANCE, Timing,
+    Orientation, RapidSurfaceSpeed, SPIRAL_TOLERANCE, Schedule, SpeedWait, Summary, TIME_TOLERANCE, Timing,
 };
 use turnwright_units::{
     Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position, Radius, Revolutions, Rpm, Seconds,
@@ -369,6 +369,8 @@ fn nothing_makes_a_time_that_is_no_number() {
             stop_s: rate(),
             optional_stop_s: rate(),
             loading_s: rate(),
+            speed_wait: if round % 2 == 0 { SpeedWait::Order } else { SpeedWait::Cut },
+            orientation: Some(Orientation { code: 10, seconds: rate() }).filter(|_| round % 3 == 0),
             rpm_max: None,
             rpm_min_surface: 0,
             rapid_surface_speed: RapidSurfaceSpeed::AtPresentPoint,
