@@ -49,8 +49,7 @@ pub(crate) fn machined(
         let removed = run.as_mut().map(|run| run.add(&command));
         match &mut measure {
             Some(measure) => {
-                let removed_mm3 = removed.flatten().map(|removed| removed.volume_mm3);
-                measure.add(command, removed_mm3);
+                measure.add(command, removed.flatten());
                 look(&execution, measure)?;
             }
             None if run.as_ref().is_none_or(PartRun::is_full) => break,

@@ -280,6 +280,25 @@ fn time_counts_what_the_shop_knows_and_tells_of_alarms() {
 }
 
 #[test]
+fn advice_is_a_section_of_its_own_and_no_warning() {
+    let folder = Folder::new();
+    let setup = folder
+        .file("a.toml", "[stock]\ndiameter_mm = 50\nlength_mm = 80\n[tools.1]\ninsert = \"CNMG120408\"\n");
+    let program = "T0101\nG97 S1000 M03\nG99 G00 X46. Z20.\nG01 Z-30. F0.2\nX52.\nG00 X80. Z50.\nM05\nT0100\nM30\n";
+    let file = folder.file("a.nc", program);
+    for command in ["run", "time"] {
+        let ran = turnwright(&[command, &file, "--setup", &setup, "--lang", "en", "--deny", "warnings"]);
+        assert_eq!(ran.status, 0, "{}", ran.err);
+        assert!(ran.out.contains("time that could be saved") && ran.out.contains("T391"), "{}", ran.out);
+        let ran = turnwright(&[command, &file, "--setup", &setup, "--format", "json"]);
+        let document: Value = serde_json::from_str(&ran.out).expect("JSON");
+        let advice = if command == "run" { &document["advice"] } else { &document["programs"][0]["advice"] };
+        assert_eq!((&advice[0]["id"], &advice[0]["line"]), (&Value::from("T391"), &Value::from(4)));
+        assert!((advice[0]["seconds"].as_f64().expect("seconds") - 5.4).abs() < 0.5);
+    }
+}
+
+#[test]
 fn a_thread_with_a_short_lead_in_is_told_what_it_needs() {
     // Lead 1.5 at 1200 rpm: 3.6 mm for a lead that is right to a hundredth.
     let folder = Folder::new();

@@ -6,6 +6,7 @@
 //! Deliberately not here: the control's own alarms and warnings, which are the interpreter's; sentences, which are in
 //! `data/`.
 
+pub mod advice;
 mod checks;
 mod inference;
 pub mod measuring;

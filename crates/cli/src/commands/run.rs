@@ -12,6 +12,7 @@ use turnwright_export::formats::part_svg::{PartDrawing, write_part_svg};
 use turnwright_export::formats::svg::{PictureOptions, write_svg};
 use turnwright_export::formats::time_svg::{TimePicture, write_time_svg};
 use turnwright_verify::Checks;
+use turnwright_verify::advice::Advisor;
 
 use super::plot::paint;
 use super::trace::{BUFFER_BYTES, write_alarm, write_json};
@@ -71,6 +72,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         folder.as_mut().map_or(Ok(()), |folder| folder.pour_table(measure, BUFFER_BYTES))
     };
     let (setup, asked) = (&checked.inferred.setup, &options.machine);
+    measure.advisor = Some(Advisor::new(setup, rates));
     let mut part = part::machined(&text, &session, asked, setup, Some(&mut measure), &mut look)?;
     progress.finish();
     measure.warnings().for_each(|warning| execution.warn(warning));

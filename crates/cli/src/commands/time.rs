@@ -15,6 +15,7 @@ use serde_json::{Value, json};
 use turnwright_export::formats::time_svg::{TimePicture, write_time_svg};
 use turnwright_motion::{Kind, Totals};
 use turnwright_verify::Checks;
+use turnwright_verify::advice::Advisor;
 
 use super::check::{Candidate, candidates};
 use super::plot::write_picture;
@@ -94,6 +95,7 @@ fn one(path: &Path, options: &Time, printer: &Printer) -> Result<Status, Fault> 
         pour(table.as_mut(), measure, BUFFER_BYTES)
     };
     let (setup, asked) = (&checked.inferred.setup, &options.machine);
+    measure.advisor = Some(Advisor::new(setup, rates));
     part::machined(&text, &session, asked, setup, Some(&mut measure), &mut look)?;
     progress.finish();
     pour(table.as_mut(), &mut measure, 0)?;

@@ -36,6 +36,7 @@ impl RunReport {
         out.push_str(&facts(&self.figures(speech)));
         out.push('\n');
         out.push_str(&self.measure.times_text(speech));
+        out.push_str(&self.advice_text(speech));
         out.push_str(&self.endnotes(speech));
         out
     }

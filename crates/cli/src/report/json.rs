@@ -36,6 +36,7 @@ impl RunReport {
             "measures": judged_json(&self.judged),
             "spindle_rpm": self.measure.summary.rpm().map(|rpm| json!({ "min": rpm.min, "max": rpm.max })),
             "time": self.measure.time_json(),
+            "advice": self.advice_json(text, speech),
             "estimates": self.estimates_json(speech),
             "assumptions": self.assumptions_json(speech),
             "files": self.written,

@@ -19,8 +19,10 @@ use turnwright_export::timeline::Timeline;
 use turnwright_motion::{
     BlockTimes, Dynamics, Kind, MachineRates, Operation, OperationKind, Schedule, ShortLeadIn, Summary,
 };
+use turnwright_stock::Removed;
 use turnwright_units::{Length, Position, WorkTip, write_millimetres};
 use turnwright_verify::Assumption;
+use turnwright_verify::advice::{Advice, Advisor};
 use turnwright_verify::measuring::Judged;
 use turnwright_verify::part::Part;
 
@@ -46,8 +48,12 @@ pub(crate) struct Measure {
     pub(crate) table: Option<Vec<u8>>,
     /// Threads that start too close to the work, once a line.
     pub(crate) short_lead_ins: BTreeMap<(u32, u32), ShortLeadIn>,
-    /// What the commands whose time is not known yet took away, mm³.
-    removed_mm3: VecDeque<Option<f64>>,
+    /// What the commands whose time is not known yet took away.
+    removed: VecDeque<Option<Removed>>,
+    /// Where time could be saved.
+    pub(crate) advisor: Option<Advisor>,
+    /// What it found.
+    pub(crate) advice: Vec<Advice>,
     dynamics: Option<Dynamics>,
 }
 
@@ -76,15 +82,17 @@ impl Measure {
             timeline: kept.timeline.then(Timeline::default),
             table: kept.table.then_some(table),
             short_lead_ins: BTreeMap::new(),
-            removed_mm3: VecDeque::new(),
+            removed: VecDeque::new(),
+            advisor: None,
+            advice: Vec::new(),
             dynamics: rates.dynamics,
         }
     }
 
-    /// Adds a command and what it took away, mm³, when anybody knows.
+    /// Adds a command and what it took away, when anybody knows.
     #[inline]
-    pub(crate) fn add(&mut self, command: Command, removed_mm3: Option<f64>) {
-        self.removed_mm3.push_back(removed_mm3);
+    pub(crate) fn add(&mut self, command: Command, removed: Option<Removed>) {
+        self.removed.push_back(removed);
         self.schedule.push(command);
         self.take();
     }
@@ -96,6 +104,7 @@ impl Measure {
         if let (Some(block), Some(table)) = (self.blocks.finish(), &mut self.table) {
             write_times_row(table, &block);
         }
+        self.advice = self.advisor.take().map_or(Vec::new(), Advisor::finish);
     }
 
     /// What was found about the commands.
@@ -113,12 +122,19 @@ impl Measure {
     /// Takes the commands whose time is known.
     fn take(&mut self) {
         while let Some((command, timing)) = self.schedule.next_known() {
-            let removed_mm3 = self.removed_mm3.pop_front().flatten();
+            let removed = self.removed.pop_front().flatten();
+            if let Some(advisor) = &mut self.advisor {
+                advisor.add(&command, &timing, removed.as_ref());
+            }
             if let Some(timeline) = &mut self.timeline {
                 if let Action::Tool { tool, .. } = command.action {
                     timeline.call_tool(tool);
                 }
-                timeline.add(&timing, command.action.end_point().unwrap_or(timing.from), removed_mm3);
+                timeline.add(
+                    &timing,
+                    command.action.end_point().unwrap_or(timing.from),
+                    removed.map(|removed| removed.volume_mm3),
+                );
             }
             self.summary.add(&command, &timing);
             let operations = self.summary.operations();

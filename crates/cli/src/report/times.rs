@@ -2,9 +2,11 @@
 
 use serde_json::{Value, json};
 use turnwright_motion::{Kind, Totals};
+use turnwright_verify::advice::Advice;
 
 use super::{Measure, RunReport, TIME_PARTS};
 use crate::environment::ProgramText;
+use crate::finding::Finding;
 use crate::speech::Speech;
 use crate::table::{Side, Table, heading};
 
@@ -102,6 +104,40 @@ impl Measure {
 }
 
 impl RunReport {
+    fn advised(&self, advice: &Advice) -> Finding {
+        Finding::new(&*self.file, advice.diagnostic.clone()).with_ids(self.session.control.alarm_ids)
+    }
+
+    /// Where time could be saved.
+    pub(super) fn advice_text(&self, speech: Speech) -> String {
+        if self.measure.advice.is_empty() {
+            return String::new();
+        }
+        let mut table = Table::new(&[Side::Right, Side::Right, Side::Left]);
+        for advice in &self.measure.advice {
+            let finding = self.advised(advice);
+            let words = finding.words(speech.messages(), speech.language);
+            let line = advice.diagnostic.place.map_or(0, |place| place.line).to_string();
+            let id = finding.id(speech.messages()).into_owned();
+            let line = speech.fill("call-line", &[("line", &line)]);
+            table.row([speech.duration(advice.seconds), line, format!("{id}  {}", words.message)]);
+            table.row([String::new(), String::new(), format!("      {}", words.remedy)]);
+        }
+        format!("{}\n{}\n", heading(speech.get("advice")), table.text(2, false))
+    }
+
+    /// The same for scripts.
+    pub(super) fn advice_json(&self, text: &ProgramText, speech: Speech) -> Vec<Value> {
+        let json = |advice: &Advice| {
+            let finding = self.advised(advice);
+            let spot = finding.spot(Some(text));
+            let mut value = finding.to_json(speech.messages(), speech.language, spot.as_ref());
+            value["seconds"] = json!(advice.seconds);
+            value
+        };
+        self.measure.advice.iter().map(json).collect()
+    }
+
     /// All there is to say of the time.
     pub(crate) fn time_body(&self, speech: Speech) -> String {
         let totals = self.measure.summary.totals();
@@ -128,6 +164,7 @@ impl RunReport {
             out.push('\n');
         }
         out.push_str(&self.measure.times_text(speech));
+        out.push_str(&self.advice_text(speech));
         out.push_str(&self.endnotes(speech));
         out
     }
@@ -146,6 +183,7 @@ impl RunReport {
                 "machine": self.machine.name,
                 "time": self.measure.time_json(),
                 "operations": self.operations_json(speech),
+                "advice": self.advice_json(text, speech),
                 "stopped_at_line": self.stopped_at,
                 "diagnostics": diagnostics.collect::<Vec<_>>(),
                 "estimates": self.estimates_json(speech),
