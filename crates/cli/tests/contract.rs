@@ -284,7 +284,8 @@ fn advice_is_a_section_of_its_own_and_no_warning() {
     let folder = Folder::new();
     let setup = folder
         .file("a.toml", "[stock]\ndiameter_mm = 50\nlength_mm = 80\n[tools.1]\ninsert = \"CNMG120408\"\n");
-    let program = "T0101\nG97 S1000 M03\nG99 G00 X46. Z20.\nG01 Z-30. F0.2\nX52.\nG00 X80. Z50.\nM05\nT0100\nM30\n";
+    let program =
+        "T0101\nG97 S1000 M03\nG99 G00 X46. Z20.\nG01 Z-30. F0.2\nX52.\nG00 X80. Z50.\nM05\nT0100\nM30\n";
     let file = folder.file("a.nc", program);
     for command in ["run", "time"] {
         let ran = turnwright(&[command, &file, "--setup", &setup, "--lang", "en", "--deny", "warnings"]);
