@@ -9,6 +9,7 @@
 mod blank;
 mod functions;
 mod limits;
+mod machine;
 mod materials;
 mod measures;
 mod messages;
@@ -30,6 +31,7 @@ use serde::Deserialize;
 pub use blank::Stock;
 pub use functions::{CodeSystem, FunctionEntry, Functions, Group, parse_code};
 pub use limits::Limits;
+pub use machine::{AUXILIARY_TIMES_MAX, AccDec, LinearAxis, Machine, MachineAxes, RotaryAxis, SpeedWait};
 pub use materials::{IsoGroup, Material, material, materials};
 pub use measures::{Measure, MeasureEntry, Quantity, SectionSpot};
 pub use messages::{Language, MessageText, Messages, RaisedBy};
@@ -39,8 +41,7 @@ pub use parameter_text::{
 };
 pub use parameters::{Acts, Axis, Parameter, ParameterFault, Parameters, UnderNumber};
 pub use setup::{
-    AUXILIARY_TIMES_MAX, AccDec, AxisPair, CheckSwitches, LinearAxis, Machine, MachineAxes, Mode, Offset,
-    OffsetRow, RotaryAxis, Setup, SetupFault, SpeedWait, ZeroRow, machine_names,
+    AxisPair, CheckSwitches, Mode, Offset, OffsetRow, Setup, SetupFault, ZeroRow, machine_names,
 };
 pub use setup_comment::setup_comment;
 pub use setup_text::setup_key_words;
