@@ -66,6 +66,7 @@ pub(crate) enum Command {
     Motion(Motion),
     Time(Time),
     Measure(Measure),
+    Diff(Diff),
     Explain(Explain),
     Controls(Controls),
     Data(Data),
@@ -275,6 +276,26 @@ pub(crate) struct Measure {
     pub(crate) machine: Machine,
 }
 
+/// Tells what an edit changed in passes, part and time, not in text.
+///
+/// Exit status: 0 the programs do the same, 1 they differ, 2 trouble. With the seven arguments of a git external diff it
+/// shows the same and exits with 0, as git wants it; see the README for the lines that make git use it.
+#[derive(Debug, Args)]
+#[command(after_long_help = examples("diff"))]
+pub(crate) struct Diff {
+    /// The old and the new program; or the seven arguments that git gives an external diff
+    #[arg(required = true, num_args = 2..=9, value_names = ["OLD", "NEW"])]
+    pub(crate) files: Vec<PathBuf>,
+    /// Draws both parts over each other: a name that ends in .svg or .png
+    #[arg(short, long, value_name = "OUT.svg|OUT.png", value_parser = picture_name)]
+    pub(crate) output: Option<PathBuf>,
+    /// Form of the answer
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub(crate) format: LookupFormat,
+    #[command(flatten)]
+    pub(crate) machine: Machine,
+}
+
 /// Says what a G or M code, an alarm or a parameter means, or what each pass of a cycle does and why.
 #[derive(Debug, Args)]
 #[command(after_long_help = examples("explain"))]
@@ -388,7 +409,7 @@ pub(crate) struct Man {
 }
 
 /// The commands that have a page.
-const COMMAND_NAMES: [&str; 13] = [
+const COMMAND_NAMES: [&str; 14] = [
     "run",
     "check",
     "trace",
@@ -396,6 +417,7 @@ const COMMAND_NAMES: [&str; 13] = [
     "motion",
     "time",
     "measure",
+    "diff",
     "explain",
     "controls",
     "data",

@@ -521,9 +521,19 @@ fn controls_are_listed_shown_and_compared() {
 
 #[test]
 fn every_command_has_help_with_an_example() {
-    for command in
-        ["run", "check", "trace", "plot", "measure", "explain", "controls", "data", "completions", "man"]
-    {
+    for command in [
+        "run",
+        "check",
+        "trace",
+        "plot",
+        "measure",
+        "diff",
+        "explain",
+        "controls",
+        "data",
+        "completions",
+        "man",
+    ] {
         let ran = turnwright(&[command, "--help"]);
         assert_eq!(ran.status, 0, "{command}");
         assert!(ran.out.contains(&format!("  turnwright {command}")), "{command}: {}", ran.out);

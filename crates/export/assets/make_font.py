@@ -9,12 +9,16 @@ file names of turned parts are made of. Run it again after adding a Chinese text
 import json
 import pathlib
 import sys
+import tomllib
 
 from fontTools import subset
 from fontTools.ttLib import TTCollection
 
 HERE = pathlib.Path(__file__).parent
 TEXTS = HERE / "../../../data/report-texts.json"
+# Of the words of the command line, those that stand in pictures too.
+WORDS = HERE / "../../../data/texts.toml"
+IN_PICTURES = ("diff-", "cutting-", "target-", "list-comma", "colon", "pass-")
 FAMILY = "Turnwright Sans"
 SIGNS = "⌀−·→←↑↓°±×…–—“”‘’、。，：；（）"
 PART_NAMES = (
@@ -28,6 +32,9 @@ texts = json.loads(TEXTS.read_text(encoding="utf-8"))
 characters = {chr(c) for c in [*range(0x20, 0x7F), *range(0xA0, 0x100)]} | set(SIGNS) | set(PART_NAMES)
 for entry in texts.values():
     characters |= set(entry["en"]) | set(entry["zh"])
+for key, entry in tomllib.loads(WORDS.read_text(encoding="utf-8")).items():
+    if key.startswith(IN_PICTURES):
+        characters |= set(entry["en"]) | set(entry["zh"])
 
 collection = TTCollection(sys.argv[1])
 font = next(f for f in collection.fonts if f["name"].getDebugName(4) == "Noto Sans CJK SC")

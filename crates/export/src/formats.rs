@@ -2,6 +2,7 @@
 
 pub mod html;
 pub mod jsonl;
+pub mod overlay_svg;
 pub mod part_svg;
 #[cfg(feature = "png")]
 pub mod png;

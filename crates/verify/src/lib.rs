@@ -7,7 +7,10 @@
 //! `data/`.
 
 pub mod advice;
+mod alignment;
+pub mod changes;
 mod checks;
+pub mod comparison;
 mod inference;
 pub mod measuring;
 pub mod part;

@@ -3,6 +3,7 @@
 mod check;
 mod controls;
 mod data;
+mod diff;
 mod explain;
 mod generate;
 mod measure;
@@ -28,6 +29,7 @@ pub(crate) fn run(arguments: &Arguments, printer: &Printer) -> Result<Status, Fa
         Command::Motion(options) => motion::run(options, printer),
         Command::Time(options) => time::run(options, printer),
         Command::Measure(options) => measure::run(options, printer),
+        Command::Diff(options) => diff::run(options, printer),
         Command::Explain(options) => explain::run(options, printer),
         Command::Controls(options) => controls::run(options, printer),
         Command::Data(options) => data::run(options, printer),
@@ -46,6 +48,7 @@ pub(crate) fn format(arguments: &Arguments) -> Format {
         Command::Plot(options) => options.format,
         Command::Setup(options) => options.format,
         Command::Measure(options) => lookup(options.format),
+        Command::Diff(options) => lookup(options.format),
         Command::Explain(options) => lookup(options.format),
         Command::Time(options) => lookup(options.format),
         Command::Controls(options) => lookup(options.format),

@@ -225,7 +225,7 @@ impl RunReport {
 }
 
 /// What a machinist would call an operation.
-fn operation_name(operation: &Operation, control: &Control, speech: Speech) -> String {
+pub(crate) fn operation_name(operation: &Operation, control: &Control, speech: Speech) -> String {
     let label = operation.label.map(|label| label.0);
     let of_code =
         label.and_then(|code| speech.functions().by_code(code, code_system(control), control.code_table));
