@@ -6,13 +6,17 @@
 //! as a separate program when it is installed; without it only our own figures are printed.
 //! `removal` takes material away beside a polyline library (R1, R3, R4).
 //! `motion [TICKS]` plans paths and plays programs beside `rsruckig` (T1 to T5).
+//! `work NAME COUNT` is what `cargo xtask guard` counts the instructions of.
 //! `cycles` runs P7 and a figure of 100 pockets alone; `generate DIR [BLOCKS]`, `lex FILE`, `tree FILE`, `interpret FILE`, `listing FILE` do single steps.
 
 mod compare;
 mod cycles;
 mod generate;
+#[cfg(feature = "peers")]
 mod motion;
+#[cfg(feature = "peers")]
 mod removal;
+mod work;
 
 use std::fs::File;
 use std::os::unix::fs::FileExt;
@@ -42,8 +46,15 @@ fn main() -> ExitCode {
         ["interpret", file] => interpret(Path::new(file)).map(drop),
         ["listing", file] => listing(Path::new(file)),
         ["cycles"] => compare::cycles(3),
+        ["work", name, count] => match count.parse() {
+            Ok(count) => work::run(name, count),
+            Err(_) => Err(format!("{count} is no number")),
+        },
+        #[cfg(feature = "peers")]
         ["removal"] => removal::run(1_000, 10).and_then(|()| removal::growth(10_000, 10)),
+        #[cfg(feature = "peers")]
         ["motion"] => motion::run(10_000_000),
+        #[cfg(feature = "peers")]
         ["motion", ticks] => motion::run(ticks.parse().unwrap_or(10_000_000)),
         ["compare"] => compare::run(1_000_000, 5),
         ["compare", blocks] => compare::run(blocks.parse().unwrap_or(1_000_000), 5),

@@ -2,11 +2,12 @@
 
 use std::process::ExitCode;
 
-use xtask::{green, root, tidy};
+use xtask::{green, guard, root, tidy};
 
 const HELP: &str = "\
 cargo xtask test   every test there is: Rust, then the browser; ends with the sums
 cargo xtask tidy   the rules of the house, also a test of its own
+cargo xtask guard  instructions of small pieces of work, beside the baseline; --bless writes it
 
 Environment of `test`:
   TURNWRIGHT_TEST_ARGS        arguments for `cargo test` instead of --workspace; `none` leaves it out
@@ -17,6 +18,8 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
         ["test"] => green::run(&root()),
+        ["guard"] => guard::run(&root(), false),
+        ["guard", "--bless"] => guard::run(&root(), true),
         ["tidy"] => {
             let faults = tidy::faults(&root());
             for fault in &faults {
