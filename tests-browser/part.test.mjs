@@ -241,6 +241,57 @@ test("the page in Chinese: nothing of the part stays English", async () => {
   assert.match(await page.textContent("#sizes"), /外圆/);
 });
 
+test("in space the part is drawn, is cut open, and changes with the time", async () => {
+  await open(drawn);
+  await page.click("#solid-shown");
+  await settle();
+  const seen = () => page.evaluate(() => turnwright.solid);
+  const done = await seen();
+  assert.ok(done.painted > 20000, `the canvas is not empty: ${done.painted}`);
+  assert.equal(await page.locator("#picture").isVisible(), false);
+  await page.fill("#position", "0");
+  const bar = await seen();
+  // A bar: its cylinder and two faces.
+  assert.equal(bar.walls, 3);
+  await page.evaluate(() => turnwright.goToTime(0.8 * turnwright.totalTime));
+  assert.ok((await seen()).walls > 6);
+  await page.keyboard.press("c");
+  assert.equal((await seen()).isOpen, false);
+  assert.equal(await page.getAttribute("#quarter", "aria-pressed"), "false");
+  // Turning it by hand changes the picture, and Fit brings it back.
+  const before = (await seen()).painted, box = await page.locator("#solid").boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2 + 120, box.y + box.height / 2 + 60, { steps: 4 });
+  await page.mouse.up();
+  assert.notEqual((await seen()).painted, before);
+  await page.click("#fit");
+  assert.equal((await seen()).painted, before);
+  await page.keyboard.press("s");
+  assert.ok(await page.locator("#picture").isVisible());
+  assert.equal(await seen(), null);
+});
+
+test("--no-3d leaves three.js out, and the button with it", async () => {
+  const small = reportOf("small", DRAWN, "--no-3d");
+  const saved = statSync(drawn).size - statSync(small).size;
+  assert.ok(saved > 500_000, `${saved} bytes less`);
+  await open(small);
+  assert.equal(await page.locator("#solid-shown").isVisible(), false);
+  await page.keyboard.press("s");
+  assert.ok(await page.locator("#picture").isVisible());
+});
+
+test("without WebGL the page says so and stays at the section", async () => {
+  await open(drawn);
+  await page.evaluate(() => { HTMLCanvasElement.prototype.getContext = ((get) => function (kind, ...rest) { return kind.startsWith("webgl") ? null : get.call(this, kind, ...rest); })(HTMLCanvasElement.prototype.getContext); });
+  await page.click("#solid-shown");
+  assert.ok(await page.locator("#picture").isVisible());
+  assert.match(await page.textContent("#incomplete"), /no WebGL/);
+  assert.ok(await page.locator("#solid-shown").isDisabled());
+  complaints = complaints.filter((text) => !/WebGL/.test(text));
+});
+
 test("without scripts the page shows the finished part and says what is missing", async () => {
   await open(drawn, { javaScriptEnabled: false });
   assert.match(await page.textContent("noscript"), /needs scripts/);

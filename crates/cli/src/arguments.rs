@@ -160,6 +160,9 @@ pub(crate) struct Run {
     /// Folder for the report, the pictures and the trace; made when it does not exist
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Leaves the view in space out of report.html, which is 0.6 MB smaller then
+    #[arg(long, requires = "out")]
+    pub(crate) no_3d: bool,
     /// Form of the report
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
     pub(crate) format: Format,

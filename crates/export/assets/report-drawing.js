@@ -73,7 +73,34 @@ const stageDrawing = (frame) => {
     c.lineWidth = 1; c.stroke();
     for (const start of [-Math.PI / 2, Math.PI / 2]) { c.beginPath(); c.moveTo(x, y); c.arc(x, y, 6, start, start + Math.PI / 2); c.fill(); }
   };
-  return { axes, chuck, zero };
+  // The number of each pass where it begins, as far as there is room; gives those that are drawn.
+  const passNumbers = (c, passes) => {
+    if (passes.length === 0) return [];
+    const taken = [], GAP = 6, HIGH = 12;
+    c.font = "bold 12px system-ui, sans-serif";
+    c.textAlign = "center";
+    c.textBaseline = "middle";
+    const drawn = [];
+    for (const { number: n, from } of passes) {
+      const x = toPxX(from[1]), y = toPxY(from[0] / 2), text = String(n), wide = c.measureText(text).width;
+      if (x < LEFT || x > frame.width || y < 0 || y > frame.height - BOTTOM) continue;
+      c.beginPath(); c.arc(x, y, 2.5, 0, 2 * Math.PI);
+      c.fillStyle = colours["lit-core"]; c.fill();
+      if (drawn.length >= 500) continue;
+      const room = [[GAP + wide / 2, 0], [-GAP - wide / 2, 0], [0, -GAP - HIGH / 2], [0, GAP + HIGH / 2]]
+        .map(([dx, dy]) => [x + dx - wide / 2 - 1, y + dy - HIGH / 2, x + dx + wide / 2 + 1, y + dy + HIGH / 2])
+        .find(([x0, y0, x1, y1]) => x0 > LEFT && x1 < frame.width && y0 > 0 && y1 < frame.height - BOTTOM
+          && !taken.some(([a0, b0, a1, b1]) => x0 < a1 && a0 < x1 && y0 < b1 && b0 < y1));
+      if (!room) continue;
+      taken.push(room);
+      drawn.push(n);
+      c.lineWidth = 3; c.lineJoin = "round"; c.strokeStyle = colours.paper;
+      c.strokeText(text, (room[0] + room[2]) / 2, (room[1] + room[3]) / 2);
+      c.fillText(text, (room[0] + room[2]) / 2, (room[1] + room[3]) / 2);
+    }
+    return drawn;
+  };
+  return { axes, chuck, zero, passNumbers };
 };
 
 // The part, the tool and what was found about them.

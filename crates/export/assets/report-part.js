@@ -80,6 +80,7 @@ const cutBy = (slabs, from, to, items) => {
   if (a < b && slabs[a].from < from) all.push({ ...slabs[a], to: from });
   for (const item of items) all.push(item);
   if (a < b && slabs[b - 1].to > to) all.push({ ...slabs[b - 1], from: to });
+  if (all.length < 1000) { slabs.splice(a, b - a, ...all); return; }
   const behind = slabs.slice(b);
   slabs.length = a;
   for (const slab of all) slabs.push(slab);
@@ -102,9 +103,22 @@ const takeOut = (slabs, { lower, upper }) => {
   if (lower.length === 0 || upper.length === 0) return;
   const z0 = lower[0].from, z1 = lower.at(-1).to, out = [];
   const lineAt = (chain, z) => chain.find(({ to }) => z <= to) ?? chain.at(-1);
+  // The lower side falls to its lowest place and rises behind it: how deep it comes in a stretch is soon told.
+  let deepest = lower[0].from;
+  for (const { to, edge } of lower) if (edge.s < 0) deepest = to;
+  const isClear = ({ from, to, rings }) => {
+    const [a, b] = [Math.max(from, z0), Math.min(to, z1)];
+    const low = edgeAt(lineAt(lower, Math.max(a, Math.min(b, deepest))).edge, Math.max(a, Math.min(b, deepest)));
+    return rings.every(([, roof]) => low >= (roof.r === undefined ? Math.max(edgeAt(roof, a), edgeAt(roof, b)) : roof.x + Math.max(roof.r, 0)));
+  };
   let touched = false;
   let a = firstBehind(slabs, z0);
   for (let i = a; i < slabs.length && slabs[i].from < z1; i++) {
+    if (isClear(slabs[i])) {
+      const one = slabs[i];
+      out.push(one.from >= z0 && one.to <= z1 ? one : { from: Math.max(one.from, z0), to: Math.min(one.to, z1), rings: one.rings });
+      continue;
+    }
     const { from, to, rings } = slabs[i], stops = [Math.max(from, z0), Math.min(to, z1)];
     const add = (z) => { if (z > stops[0] && z < stops[1]) stops.push(z); };
     for (const chain of [lower, upper]) for (const one of chain) {
@@ -128,7 +142,7 @@ const takeOut = (slabs, { lower, upper }) => {
       const last = out.at(-1);
       const same = last && last.to === p && last.rings.length === left.length
         && left.every((ring, k) => ring[0] === last.rings[k][0] && ring[1] === last.rings[k][1]);
-      if (same) last.to = q;
+      if (same) out[out.length - 1] = { ...last, to: q };
       else if (left.length > 0) out.push({ from: p, to: q, rings: left });
     }
   }
@@ -263,6 +277,36 @@ const ringsAt = (slabs, z) => {
   return slab ? slab.rings.map(([floor, roof]) => [edgeAt(floor, z), edgeAt(roof, z)]) : [];
 };
 
+// Upright faces: where material is on one side of a Z only. Of each its Z, from and to along X, and where its air is: 1
+// towards higher Z, -1 towards lower.
+const uprightFaces = (slabs, each) => {
+  const LEAST_MM = 1e-6;
+  const ringsOf = (slab, z) => slab.rings.map(([floor, roof]) => [edgeAt(floor, z), edgeAt(roof, z)]);
+  const inside = (rings, x) => rings.some(([floor, roof]) => floor < x && x < roof);
+  const between = (z, left, right) => {
+    const isSame = left.length === right.length
+      && left.every((ring, n) => Math.abs(ring[0] - right[n][0]) < LEAST_MM && Math.abs(ring[1] - right[n][1]) < LEAST_MM);
+    if (isSame) return;
+    const stops = [...left, ...right].flat().sort((a, b) => a - b);
+    for (let n = 1; n < stops.length; n++) {
+      const a = stops[n - 1], b = stops[n], middle = (a + b) / 2;
+      if (b - a < LEAST_MM) continue;
+      const before = inside(left, middle);
+      if (before !== inside(right, middle)) each(z, a, b, before ? 1 : -1);
+    }
+  };
+  slabs.forEach((slab, n) => {
+    const before = slabs[n - 1], touches = before && Math.abs(before.to - slab.from) < 1e-9;
+    if (touches) between(slab.from, ringsOf(before, before.to), ringsOf(slab, slab.from));
+    else {
+      if (before) between(before.to, ringsOf(before, before.to), []);
+      between(slab.from, [], ringsOf(slab, slab.from));
+    }
+  });
+  const last = slabs.at(-1);
+  if (last) between(last.to, ringsOf(last, last.to), []);
+};
+
 // A section as two paths of the canvas: what is filled, and its edges. `place` puts Z and X on the canvas.
 const sectionPaths = (slabs, pxPerMm, place) => {
   const fill = new Path2D(), edges = new Path2D(), tolerance = 0.15 / pxPerMm, near = 0.3;
@@ -285,25 +329,9 @@ const sectionPaths = (slabs, pxPerMm, place) => {
       if (!goesOn) list.push([x, y, n > 0 && !isAxis]);
     });
   };
-  // Upright faces: what is material on one side of a Z only.
-  const faces = (z, left, right) => {
-    const stops = [...left, ...right].flat().sort((a, b) => a - b);
-    const inside = (rings, x) => rings.some(([floor, roof]) => floor < x && x < roof);
-    for (let n = 1; n < stops.length; n++) {
-      const a = stops[n - 1], b = stops[n];
-      if ((b - a) * pxPerMm < 0.05) continue;
-      const middle = (a + b) / 2;
-      if (inside(left, middle) === inside(right, middle)) continue;
-      edges.moveTo(...place(z, a));
-      edges.lineTo(...place(z, b));
-    }
-  };
-  const ringsOf = (slab, z) => slab.rings.map(([floor, roof]) => [edgeAt(floor, z), edgeAt(roof, z)]);
   for (const slab of slabs) {
     const touches = before && Math.abs(before.to - slab.from) < 1e-9;
     if (!touches || before.rings.length !== slab.rings.length) close();
-    if (before) faces(before.to, ringsOf(before, before.to), touches ? ringsOf(slab, slab.from) : []);
-    if (!touches) faces(slab.from, [], ringsOf(slab, slab.from));
     slab.rings.forEach(([floor, roof], k) => {
       const chain = (chains[k] ??= { floor: [], roof: [] });
       follow(chain.floor, floor, slab.from, slab.to);
@@ -311,7 +339,11 @@ const sectionPaths = (slabs, pxPerMm, place) => {
     });
     before = slab;
   }
-  if (before) faces(before.to, ringsOf(before, before.to), []);
   close();
+  uprightFaces(slabs, (z, a, b) => {
+    if ((b - a) * pxPerMm < 0.05) return;
+    edges.moveTo(...place(z, a));
+    edges.lineTo(...place(z, b));
+  });
   return { fill, edges };
 };

@@ -90,3 +90,20 @@ const typedPath = (path) => {
     segmentEnd, arcRadius, along, lengthOf, grid, distance,
   };
 };
+
+// How many moves are done at the end of the block before (by < 0) or behind (by > 0): where another line begins. `lines` are
+// those of the moves, `part` is the share of the next move that is done.
+const blockEnd = (lines, step, part, by) => {
+  const steps = lines.length, lineOf = (move) => lines[Math.max(0, Math.min(steps - 1, move))];
+  let to = part > 0 ? step : step - 1;
+  const line = lineOf(to);
+  if (by < 0) {
+    while (to >= 0 && lineOf(to) === line) to--;
+    return to + 1;
+  }
+  if (step === 0 && part === 0) to = 0;
+  else while (to < steps && lineOf(to) === line) to++;
+  const next = lineOf(to);
+  while (to + 1 < steps && lineOf(to + 1) === next) to++;
+  return Math.min(steps, to + 1);
+};

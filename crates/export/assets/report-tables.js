@@ -1,6 +1,6 @@
 // The tables and lists of a report. In: the run, the words, and what makes elements and leads to lines and places.
 "use strict";
-const reportTables = ({ run, byId, element, word, inLanguage, number, seconds, lineButton, placeButton, SIGNS }) => {
+const reportTables = ({ run, byId, element, word, inLanguage, number, seconds, lineButton, placeButton, SIGNS, kind, KINDS, LOOK, model, marks, hasSolid }) => {
   const cell = (text, quantity) => element("td", quantity ? { class: "quantity" } : {}, text);
   const headOf = (columns) => element("thead", {}, element("tr", {}, ...columns.map(([key, quantity]) =>
     element("th", { scope: "col", class: quantity ? "quantity" : undefined }, key ? word(key) : ""))));
@@ -55,5 +55,24 @@ const reportTables = ({ run, byId, element, word, inLanguage, number, seconds, l
         ...rows.map(({ kind, diameter, text, z }) => row(word("size-" + kind), text ?? (diameter === undefined ? "" : `⌀${number(diameter, 3)}`), place(z)))));
   };
 
-  return () => { makeOperations(); makeDiagnostics(); makeFacts(); makeAssumptions(); makeSizes(); };
+  const makeLegend = () => {
+    const stroke = (look) => {
+      const span = element("span");
+      span.innerHTML = `<svg viewBox="0 0 34 8" aria-hidden="true"><line x1="1" y1="4" x2="33" y2="4" ${look}/></svg>`;
+      return span.firstChild;
+    };
+    const used = new Set(kind);
+    const entries = KINDS.filter((_, k) => used.has(k)).map((name) =>
+      [word("picture-" + name), `stroke="var(--${name})" stroke-width="${LOOK[name][0] + 0.4}" stroke-dasharray="${LOOK[name][1].join(" ")}"`]);
+    entries.push([word("picture-centre-line"), `stroke="var(--centre)" stroke-dasharray="14 4 2 4"`]);
+    if (model) entries.push([word("picture-stock"), `stroke="var(--faint-ink)" stroke-dasharray="10 3 2 3 2 3"`]);
+    if (marks.length > 0) entries.push([word("picture-finding"), `stroke="var(--error)" stroke-width="2" stroke-dasharray="4 3"`]);
+    byId("legend").replaceChildren(...entries.map(([text, look]) => element("li", {}, stroke(look), text)));
+  };
+  const KEYS = [["→ ←", "key-step"], ["PgDn PgUp", "key-block"], ["Home End", "key-ends"], ["Space", "key-play"], ["↓ ↑", "key-line"], ["Enter", "key-enter"],
+    ["+ −", "key-zoom"], ["Shift+↑ ↓ ← →", "key-pan"], ["0 F", "key-fit"], ...(model ? [["P", "key-path"]] : []), ...(hasSolid ? [["S", "key-view"], ["C", "key-quarter"]] : []), ["L", "key-language"], ["Esc", "key-escape"], ["?", "key-help"]];
+  const makeKeys = () => byId("key-list").replaceChildren(...KEYS.flatMap(([keys, key]) => [
+    element("dt", {}, ...keys.split(" ").flatMap((one) => [element("kbd", {}, one), " "])), element("dd", {}, word(key))]));
+
+  return () => { makeOperations(); makeDiagnostics(); makeFacts(); makeAssumptions(); makeSizes(); makeLegend(); makeKeys(); };
 };

@@ -57,6 +57,7 @@
     }
     return along(segmentEnd(move) - 1, 1);
   };
+  const hasSolid = Boolean(run.part && byId("turnwright-three"));
   const model = run.part ? partModel(run.part, path, {
     segmentEnd, along, lengthOf, sweep, arcRadius, startZ, moveLength, placeOn,
   }) : null;
@@ -104,7 +105,10 @@
   let lit = new Uint32Array(0);           // highlighted segments
   const view = { pxPerMm: 1, x: 0, z: 0 };// what lies in the middle of the plot
   let fitted = true;
-  let pathShown = true;
+  // A very long path hides the part, and costs time: it is shown when it is asked for.
+  const LONG_PATH = 20000;
+  let pathShown = !model || segments <= LONG_PATH;
+  let solid = null, solidShown = false;   // the part in space, made when it is asked for
 
   // ---- the picture -------------------------------------------------------------------------------------
   const picture = byId("picture");
@@ -115,7 +119,7 @@
   const colours = {};
   const readColours = () => {
     const style = getComputedStyle(document.documentElement);
-    for (const name of ["paper", "ink", "faint-ink", "rule", "rapid", "feed", "thread", "grid", "centre", "tool", "lit", "lit-core", "stock", "stock-edge", "fallen", "holder", "insert", "error", "warning", "note"])
+    for (const name of ["paper", "ink", "faint-ink", "rule", "rapid", "feed", "thread", "grid", "centre", "tool", "lit", "lit-core", "stock", "stock-edge", "fallen", "holder", "insert", "steel", "cut", "fallen-steel", "error", "warning", "note"])
       colours[name] = style.getPropertyValue("--" + name).trim();
   };
   const plotMiddleX = () => LEFT + (width - LEFT) / 2, plotMiddleY = () => (height - BOTTOM) / 2;
@@ -230,17 +234,32 @@
     drawDone();
     drawMarks();
   };
+  const showSolid = () => {
+    const tool = step < steps && segments > 0 ? model.toolOf(currentMove()) : null;
+    solid.show({
+      section: model.sectionAt(step, part), fallen: model.fallenAt(step), tool, place: toolPosition(), pathShown,
+      segments: step < steps ? path.first[step] : segments,
+    });
+  };
   const drawStock = () => { if (model) drawing.stock(stockLayer, model.sectionAt(step, part), model.fallenAt(step)); };
   // What is done so far, drawn on; going back starts anew.
-  const drawDone = () => {
-    const wanted = step < steps ? path.first[step] : 0;
-    if (wanted < doneSegments) {
+  const DONE_AT_ONCE = 4000;
+  let waiting = 0;
+  const drawDone = (atOnce = false) => {
+    const target = step < steps ? path.first[step] : 0;
+    // Much at once, or all anew, waits until the hand rests.
+    if (!atOnce && segments > LONG_PATH && (target < doneSegments || target - doneSegments > DONE_AT_ONCE)) {
+      clearTimeout(waiting);
+      waiting = setTimeout(() => drawDone(true), REST_MS);
+      return;
+    }
+    if (target < doneSegments) {
       doneLayer.clearRect(0, 0, width, height);
       doneSegments = 0;
     }
-    if (wanted > doneSegments && pathShown) {
-      inPlot(doneLayer, () => strokeSegments(doneLayer, doneSegments, wanted, null, { wider: 0.9 }));
-      doneSegments = wanted;
+    if (target > doneSegments && pathShown) {
+      inPlot(doneLayer, () => strokeSegments(doneLayer, doneSegments, target, null, { wider: 0.9 }));
+      doneSegments = target;
     }
   };
   // The numbers of the passes that the selection is about, each where its pass begins, as far as there is room.
@@ -248,30 +267,6 @@
     if (pickedPass) return [cycles[pickedPass[0]].passes[pickedPass[1]]];
     if (selectedFrom === 0) return [];
     return cycles.flatMap(({ passes }) => passes.filter(({ line }) => line >= selectedFrom && line <= selectedTo));
-  };
-  const drawPassNumbers = (c) => {
-    const taken = [], GAP = 6, HIGH = 12;
-    c.font = "bold 12px system-ui, sans-serif";
-    c.textAlign = "center";
-    c.textBaseline = "middle";
-    numbersDrawn = [];
-    for (const { number: n, from } of numberedPasses()) {
-      const x = toPxX(from[1]), y = toPxY(from[0] / 2), text = String(n), wide = c.measureText(text).width;
-      if (x < LEFT || x > width || y < 0 || y > height - BOTTOM) continue;
-      c.beginPath(); c.arc(x, y, 2.5, 0, 2 * Math.PI);
-      c.fillStyle = colours["lit-core"]; c.fill();
-      if (numbersDrawn.length >= 500) continue;
-      const room = [[GAP + wide / 2, 0], [-GAP - wide / 2, 0], [0, -GAP - HIGH / 2], [0, GAP + HIGH / 2]]
-        .map(([dx, dy]) => [x + dx - wide / 2 - 1, y + dy - HIGH / 2, x + dx + wide / 2 + 1, y + dy + HIGH / 2])
-        .find(([x0, y0, x1, y1]) => x0 > LEFT && x1 < width && y0 > 0 && y1 < height - BOTTOM
-          && !taken.some(([a0, b0, a1, b1]) => x0 < a1 && a0 < x1 && y0 < b1 && b0 < y1));
-      if (!room) continue;
-      taken.push(room);
-      numbersDrawn.push(n);
-      c.lineWidth = 3; c.lineJoin = "round"; c.strokeStyle = colours.paper;
-      c.strokeText(text, (room[0] + room[2]) / 2, (room[1] + room[3]) / 2);
-      c.fillText(text, (room[0] + room[2]) / 2, (room[1] + room[3]) / 2);
-    }
   };
   let numbersDrawn = [];
   const drawMarks = () => {
@@ -288,7 +283,7 @@
         c.beginPath(); c.arc(toPxX(endZ[end]), toPxY(endX[end]), 4, 0, 2 * Math.PI);
         c.fillStyle = colours["lit-core"]; c.fill();
       }
-      drawPassNumbers(c);
+      numbersDrawn = stage.passNumbers(c, numberedPasses());
       drawing.findings(c, marks);
       const tool = toolPosition();
       if (tool && step < steps) {
@@ -311,6 +306,7 @@
   const markAt = (px, py) => marks.find(({ x, z }) => Math.hypot(toPxX(z) - px, toPxY(x) - py) <= 11);
   const showMark = (mark) => {
     setPlaying(false);
+    if (solidShown) setSolid(false);
     // On its way the tool is at the place.
     const move = mark.step - 1;
     if (move >= 0) {
@@ -328,7 +324,7 @@
     if (px < LEFT + 20 || px > width - 60 || py < 20 || py > height - BOTTOM - 20) { view.z = mark.z; view.x = mark.x; fitted = false; redraw(); }
   };
   // After a change of the view. A long path is first moved as a picture and drawn anew when the hand rests.
-  const LONG_PATH = 20000, REST_MS = 140;
+  const REST_MS = 140;
   let queued = false, resting = 0;
   const redraw = () => {
     if (segments > LONG_PATH && drawnView) {
@@ -349,6 +345,7 @@
 
   // ---- the view ----------------------------------------------------------------------------------------
   const fit = () => {
+    if (solidShown) { solid.fit(); return; }
     let [x0, x1, z0, z1] = path.view;
     if (model) { z0 = Math.min(z0, model.bounds.z0); z1 = Math.max(z1, model.bounds.z1); x1 = Math.max(x1, model.bounds.x1); }
     const roomZ = Math.max(40, width - LEFT - CHUCK - 2 * PAD), roomX = Math.max(40, height - BOTTOM - 2 * PAD);
@@ -361,6 +358,7 @@
     redraw();
   };
   const zoom = (factor, px = plotMiddleX(), py = plotMiddleY()) => {
+    if (solidShown) { solid.zoom(factor); return; }
     const z = toZ(px), x = toX(py);
     view.pxPerMm = Math.max(1e-3, Math.min(1e5, view.pxPerMm * factor));
     view.z = z - (px - plotMiddleX()) / view.pxPerMm;
@@ -375,6 +373,7 @@
     redraw();
   };
   const resize = () => {
+    if (picture.clientWidth === 0) return;
     const ratio = window.devicePixelRatio || 1;
     width = picture.clientWidth;
     height = picture.clientHeight;
@@ -401,7 +400,7 @@
 
   // ---- the program -------------------------------------------------------------------------------------
   const list = byId("program"), rows = byId("rows");
-  const ROW_PX = 20, ROWS_PLAIN = 20000, ROWS_AROUND = 400;
+  const ROW_PX = 20, ROWS_PLAIN = 20000, ROWS_AROUND = 150;
   let rowsFrom = 1, rowsTo = 0;
   const foundAt = new Map();
   run.diagnostics.forEach((found) => {
@@ -558,7 +557,8 @@
     part = step < steps ? partDone : 0;
     if (part === 0 && waited > 0 && step !== before) waited = 0;
     // The whole path is drawn strongly when all is done, faintly else.
-    if ((before === steps) !== (step === steps)) drawPath();
+    if (solidShown) showSolid();
+    else if ((before === steps) !== (step === steps)) drawPath();
     else { drawStock(); drawDone(); drawMarks(); }
     if (before === step && current === currentMove()) showTime();
     else {
@@ -566,10 +566,14 @@
       pickedPass = null;
       markPass();
       linesLast = false;
-      if (isOnTheWay()) scrollTo(path.line[currentMove()]);
+      // While it plays fast, the list is not moved at every frame.
+      if (isOnTheWay() && !(playing && performance.now() - scrolledAt < 200)) {
+        scrollTo(path.line[currentMove()]);
+        scrolledAt = performance.now();
+      }
       markRows();
       readout();
-      if (step < steps) drawMarks();
+      if (step < steps && !solidShown) drawMarks();
     }
   };
   const clearSelection = () => { select(0); };
@@ -593,13 +597,13 @@
   };
 
   // ---- playing -----------------------------------------------------------------------------------------
-  let playing = false, clock = 0, lastFrame = 0;
+  let playing = false, scrolledAt = 0, clock = 0, lastFrame = 0;
   const setPlaying = (on) => {
     if (playing === on) return;
     playing = on && steps > 0;
     byId("play").classList.toggle("playing", playing);
     labelPlay();
-    if (!playing) return;
+    if (!playing) { if (isOnTheWay()) { scrollTo(path.line[currentMove()]); markRows(); } return; }
     if (step >= steps) goTo(0);
     clock = now();
     lastFrame = performance.now();
@@ -614,23 +618,7 @@
     else requestAnimationFrame(playOn);
   };
   const stepBy = (by) => { setPlaying(false); goTo(step + by + (by < 0 && part > 0 ? 1 : 0)); };
-  // To the end of the block before or behind: where another line begins.
-  const stepBlock = (by) => {
-    setPlaying(false);
-    const lineOf = (move) => path.line[Math.max(0, Math.min(steps - 1, move))];
-    let to = by > 0 && part > 0 ? step : step - (part > 0 ? 0 : 1);
-    const line = lineOf(to);
-    if (by > 0) {
-      if (step > 0 || part > 0) while (to < steps && lineOf(to) === line) to++;
-      else to = 0;
-      const next = lineOf(to);
-      while (to + 1 < steps && lineOf(to + 1) === next) to++;
-      goTo(Math.min(steps, to + 1));
-    } else {
-      while (to >= 0 && lineOf(to) === line) to--;
-      goTo(to + 1);
-    }
-  };
+  const stepBlock = (by) => { setPlaying(false); goTo(blockEnd(path.line, step, part, by)); };
 
   // ---- tables ------------------------------------------------------------------------------------------
   const lineButton = (text, from, to) => element("button", { type: "button", class: "link", onclick: () => { select(from, to); list.focus({ preventScroll: true }); document.querySelector("main").scrollIntoView({ block: "nearest" }); } }, text);
@@ -638,7 +626,7 @@
     showMark(marks.find((mark) => mark.at === at));
     document.querySelector("main").scrollIntoView({ block: "nearest" });
   } }, text);
-  const makeTables = reportTables({ run, byId, element, word, inLanguage, number, seconds, lineButton, placeButton, SIGNS });
+  const makeTables = reportTables({ run, byId, element, word, inLanguage, number, seconds, lineButton, placeButton, SIGNS, kind, KINDS, LOOK, model, marks, hasSolid });
   const passRow = (at, row) => byId(`pass-${at}-${row}`);
   const selectPass = (at, row) => {
     select(cycles[at].passes[row].line, cycles[at].passes[row].line, -1, [at, row]);
@@ -685,25 +673,6 @@
     if (details && !details.open) { details.open = true; fillCycle(details); }
     passRow(...pickedPass)?.setAttribute("aria-current", "true");
   }
-  const makeLegend = () => {
-    const stroke = (look) => {
-      const span = element("span");
-      span.innerHTML = `<svg viewBox="0 0 34 8" aria-hidden="true"><line x1="1" y1="4" x2="33" y2="4" ${look}/></svg>`;
-      return span.firstChild;
-    };
-    const used = new Set(kind);
-    const entries = KINDS.filter((_, k) => used.has(k)).map((name) =>
-      [word("picture-" + name), `stroke="var(--${name})" stroke-width="${LOOK[name][0] + 0.4}" stroke-dasharray="${LOOK[name][1].join(" ")}"`]);
-    entries.push([word("picture-centre-line"), `stroke="var(--centre)" stroke-dasharray="14 4 2 4"`]);
-    if (model) entries.push([word("picture-stock"), `stroke="var(--faint-ink)" stroke-dasharray="10 3 2 3 2 3"`]);
-    if (marks.length > 0) entries.push([word("picture-finding"), `stroke="var(--error)" stroke-width="2" stroke-dasharray="4 3"`]);
-    byId("legend").replaceChildren(...entries.map(([text, look]) => element("li", {}, stroke(look), text)));
-  };
-  const KEYS = [["→ ←", "key-step"], ["PgDn PgUp", "key-block"], ["Home End", "key-ends"], ["Space", "key-play"], ["↓ ↑", "key-line"], ["Enter", "key-enter"],
-    ["+ −", "key-zoom"], ["Shift+↑ ↓ ← →", "key-pan"], ["0 F", "key-fit"], ...(model ? [["P", "key-path"]] : []), ["L", "key-language"], ["Esc", "key-escape"], ["?", "key-help"]];
-  const makeKeys = () => byId("key-list").replaceChildren(...KEYS.flatMap(([keys, key]) => [
-    element("dt", {}, ...keys.split(" ").flatMap((one) => [element("kbd", {}, one), " "])), element("dd", {}, word(key))]));
-
   // ---- language ----------------------------------------------------------------------------------------
   const labelPlay = () => {
     const text = word(playing ? "pause" : "play");
@@ -722,8 +691,6 @@
     labelPlay();
     makeTables();
     makeCycles();
-    makeLegend();
-    makeKeys();
     showRows(true);
     readout();
     redraw();
@@ -738,7 +705,11 @@
     last: () => { setPlaying(false); goTo(steps); }, "zoom-in": () => zoom(1.5), "zoom-out": () => zoom(1 / 1.5), fit, language: toggleLanguage, help,
   })) byId(id).addEventListener("click", act);
   byId("views").hidden = !model;
+  byId("path-shown").setAttribute("aria-pressed", pathShown);
   byId("path-shown").addEventListener("click", () => togglePath());
+  byId("solid-shown").hidden = !hasSolid;
+  byId("solid-shown").addEventListener("click", () => toggleSolid());
+  byId("quarter").addEventListener("click", () => toggleQuarter());
   byId("position").max = totalTime;
   byId("position").addEventListener("input", (event) => { setPlaying(false); goToTime(Number(event.target.value)); });
   const goToSelection = () => { const [first] = movesOfSelection(); if (first !== undefined) { setPlaying(false); goTo(first + 1); } };
@@ -815,13 +786,14 @@
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey || keys.open) return;
     const target = event.target, own = target.closest?.("input, select");
-    if (own) return;
+    // A slider uses keys like the arrows itself, but no letters.
+    if (own && !(own.type === "range" && event.key.length === 1)) return;
     const onButton = target.closest?.("button") && (event.key === " " || event.key === "Enter");
     if (onButton) return;
     const lines = run.program.length;
     const acts = {
       ArrowRight: () => stepBy(1), ArrowLeft: () => stepBy(-1),
-      PageDown: () => stepBlock(1), PageUp: () => stepBlock(-1), ...(model ? { p: togglePath } : {}),
+      PageDown: () => stepBlock(1), PageUp: () => stepBlock(-1), ...(model ? { p: togglePath } : {}), ...(hasSolid ? { s: toggleSolid, c: toggleQuarter } : {}),
       Home: () => { setPlaying(false); goTo(0); }, End: () => { setPlaying(false); goTo(steps); },
       ArrowDown: () => select(Math.min(lines, selectedTo + 1)), ArrowUp: () => select(Math.max(1, selectedFrom - 1)),
       Enter: goToSelection, " ": () => setPlaying(!playing), "+": () => zoom(1.25), "=": () => zoom(1.25), "-": () => zoom(0.8),
@@ -839,9 +811,43 @@
   const togglePath = () => {
     pathShown = !pathShown;
     byId("path-shown").setAttribute("aria-pressed", pathShown);
-    drawPath();
+    if (solidShown) showSolid(); else drawPath();
   };
-  const recolour = () => { readColours(); drawPath(); };
+  const noSolid = () => {
+    solid = null;
+    setSolid(false);
+    byId("solid-shown").disabled = true;
+    byId("incomplete").hidden = false;
+    byId("incomplete").dataset.text = "solid-missing";
+    byId("incomplete").textContent = word("solid-missing");
+  };
+  const makeSolid = () => {
+    try {
+      const script = element("script");
+      script.textContent = byId("turnwright-three").textContent;
+      document.head.append(script);
+      return solidView(window.THREE, byId("solid"), { model, typed: { segments, kind, along, sweep }, colours, onFault: noSolid });
+    } catch {
+      return null;
+    }
+  };
+  const setSolid = (on) => {
+    solidShown = on;
+    picture.hidden = on;
+    byId("solid").hidden = !on;
+    byId("quarter").hidden = !on;
+    byId("solid-shown").setAttribute("aria-pressed", on);
+    if (!on) { resize(); return; }
+    solid ??= makeSolid();
+    if (solid) showSolid(); else noSolid();
+  };
+  const toggleSolid = () => { if (!byId("solid-shown").disabled) setSolid(!solidShown); };
+  const toggleQuarter = () => {
+    if (!solidShown) return;
+    solid.open(!solid.isOpen);
+    byId("quarter").setAttribute("aria-pressed", solid.isOpen);
+  };
+  const recolour = () => { readColours(); drawPath(); if (solid) { solid.recolour(); if (solidShown) showSolid(); } };
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", recolour);
   window.addEventListener("beforeprint", () => { document.documentElement.classList.add("printing"); recolour(); });
   window.addEventListener("afterprint", () => { document.documentElement.classList.remove("printing"); recolour(); });
@@ -883,6 +889,7 @@
       const r = picture.getBoundingClientRect();
       return { finding: at, x: r.left + picture.clientLeft + toPxX(z), y: r.top + picture.clientTop + toPxY(x) };
     }),
+    get solid() { return solidShown ? { walls: solid.walls, painted: solid.painted(), isOpen: solid.isOpen } : null; },
     linesOfMoves: () => Array.from(path.line),
     goToTime,
     lineOf: (i) => path.line[moveOf[i]],

@@ -19,8 +19,8 @@ use crate::section::Section;
 /// Moments that are kept.
 pub const HISTORY_MOMENTS_MAX: usize = 4_000;
 
-/// Edges that are kept, in all moments together; about 16 bytes each in a report.
-pub const HISTORY_EDGES_MAX: usize = 250_000;
+/// Edges that are kept, in all moments together; about 8 bytes each in a report.
+pub const HISTORY_EDGES_MAX: usize = 1_000_000;
 
 /// Pieces that came off and are kept.
 pub const FALLEN_MAX: usize = 8;

@@ -103,7 +103,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     };
     if let Some(mut folder) = folder {
         write_alarm(&mut folder.buffer, &execution, printer);
-        folder.finish(&text, &mut report, printer)?;
+        folder.finish(&text, &mut report, printer, !options.no_3d)?;
     }
     say(&report, &text, options.format, printer)?;
     Ok(status)
@@ -174,13 +174,14 @@ impl OutFolder {
         text: &ProgramText,
         report: &mut RunReport,
         printer: &Printer,
+        has_solid: bool,
     ) -> Result<(), Finding> {
         self.pour(0)?;
         self.pour_table(&mut report.measure, 0)?;
         let Self { folder, trace, times, .. } = self;
         let Some(path) = report.measure.path.take() else { return Ok(()) };
         let language = printer.speech.language;
-        let page = report.page(text, &path, printer.speech);
+        let page = report.page(text, &path, printer.speech, has_solid);
         let options = PictureOptions {
             title: report.title(),
             language: picture_language(language),

@@ -28,8 +28,14 @@ const REPORT_BYTES_MAX: usize = 16 * 1024 * 1024;
 const SPEECHES: [Speech; 2] = [Speech { language: BOTH[0] }, Speech { language: BOTH[1] }];
 
 impl RunReport {
-    /// The page.
-    pub(crate) fn page(&mut self, text: &ProgramText, path: &PathRecorder, speech: Speech) -> String {
+    /// The page; `has_solid` puts what shows the part in space into it.
+    pub(crate) fn page(
+        &mut self,
+        text: &ProgramText,
+        path: &PathRecorder,
+        speech: Speech,
+        has_solid: bool,
+    ) -> String {
         let (program_lines, is_whole) = program_lines(text);
         let mut facts = self.page_facts();
         if !is_whole {
@@ -65,7 +71,7 @@ impl RunReport {
             cycles: cycles.into_iter().map(|cycle| self.page_cycle(cycle)).collect(),
             diagnostics: self.findings.iter().map(|finding| self.page_diagnostic(finding, text)).collect(),
             assumptions: assumptions.collect(),
-            part: self.page_part(),
+            part: self.page_part(has_solid),
             facts,
             estimated_note_en,
             estimated_note_zh,
@@ -148,10 +154,10 @@ impl RunReport {
         Some(PlaceMark { command, place, depth_mm, bounds })
     }
 
-    fn page_part(&self) -> Option<ReportPart<'_>> {
+    fn page_part(&self, has_solid: bool) -> Option<ReportPart<'_>> {
         let (part, shape) = self.part.as_ref()?;
         let Part { history, stock, tools, obstacles, .. } = part;
-        Some(ReportPart { history: history.as_ref()?, shape, stock, tools, obstacles })
+        Some(ReportPart { history: history.as_ref()?, shape, stock, tools, obstacles, has_solid })
     }
 
     fn page_facts(&self) -> Vec<Fact> {

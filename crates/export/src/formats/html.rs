@@ -27,9 +27,13 @@ const SCRIPT: &str = concat!(
     include_str!("../../assets/report-path.js"),
     include_str!("../../assets/report-part.js"),
     include_str!("../../assets/report-drawing.js"),
+    include_str!("../../assets/report-solid.js"),
     include_str!("../../assets/report-tables.js"),
     include_str!("../../assets/report.js")
 );
+
+/// three.js, for the part in space; `assets/make_three.sh` makes it. It is run when a reader asks for it.
+const THREE: &str = include_str!("../../assets/three.bundle.js");
 
 /// What the report says around the path.
 #[derive(Clone, Debug, Default)]
@@ -183,6 +187,11 @@ pub fn write_html(path: &PathRecorder, report: &Report<'_>) -> String {
                 html.push_str(drawing.as_deref().unwrap_or_default());
             }
             "style" => html.push_str(STYLE),
+            "solid" if report.part.as_ref().is_some_and(|part| part.has_solid) => {
+                html.push_str("<script type=\"text/plain\" id=\"turnwright-three\">");
+                html.push_str(THREE);
+                html.push_str("</script>\n");
+            }
             "script" => html.push_str(SCRIPT),
             "texts" => html.push_str(&inert_json(REPORT_TEXTS)),
             "run" => html.push_str(&run),
@@ -609,6 +618,15 @@ mod tests {
         }
         assert!(html.contains("default-src 'none'"));
         assert!(!html.contains("{{style}}") && html.contains("\"use strict\""));
+    }
+
+    #[test]
+    fn three_stays_in_its_element_and_names_its_licence() {
+        assert!(!THREE.contains("<script") && !THREE.contains("</script") && !THREE.contains("<!--"));
+        assert!(THREE.starts_with("/*! three.js") && THREE.contains("Permission is hereby granted"));
+        // The one address is the name of an XML vocabulary, which nobody fetches.
+        let addresses = THREE.matches("http://").count() + THREE.matches("https://").count();
+        assert_eq!(addresses, THREE.matches("http://www.w3.org/1999/xhtml").count());
     }
 
     #[test]

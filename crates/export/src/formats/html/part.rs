@@ -29,6 +29,8 @@ pub struct ReportPart<'a> {
     pub tools: &'a BTreeMap<u32, ToolShape>,
     /// What stands around the work.
     pub obstacles: &'a [(Obstacle, Outline)],
+    /// Whether it can be seen in space too, which takes 0.6 MB.
+    pub has_solid: bool,
 }
 
 /// Where in the section a diagnostic is.
@@ -203,6 +205,7 @@ mod tests {
             stock: &stock,
             tools: &tools,
             obstacles: &obstacles,
+            has_solid: false,
         };
         let json: Value = serde_json::from_str(&part.json(&[])).expect("JSON");
         // One slab, its Z, one ring from the axis to 20 mm.
