@@ -80,12 +80,12 @@ impl Finding {
     }
 
     /// The control's own number where it has one, else ours, else the name.
-    pub(crate) fn id<'a>(&'a self, messages: &'a Messages) -> Cow<'a, str> {
+    pub(crate) fn id(&self, messages: Messages) -> Cow<'static, str> {
         messages.id_of(&self.diagnostic, self.ids).unwrap_or(Cow::Borrowed(self.diagnostic.key))
     }
 
     /// Its words.
-    pub(crate) fn words(&self, messages: &Messages, language: Language) -> MessageText {
+    pub(crate) fn words(&self, messages: Messages, language: Language) -> MessageText {
         messages.text(&self.diagnostic, language)
     }
 
@@ -96,19 +96,14 @@ impl Finding {
     }
 
     /// One line of JSON, with the fields of the contract in their order.
-    pub(crate) fn to_json_line(
-        &self,
-        messages: &Messages,
-        language: Language,
-        spot: Option<&Spot>,
-    ) -> String {
+    pub(crate) fn to_json_line(&self, messages: Messages, language: Language, spot: Option<&Spot>) -> String {
         let fields = self.json_fields(messages, language, spot);
         let inner: Vec<String> = fields.iter().map(|(name, value)| format!("\"{name}\":{value}")).collect();
         format!("{{{}}}", inner.join(","))
     }
 
     /// The same as a value.
-    pub(crate) fn to_json(&self, messages: &Messages, language: Language, spot: Option<&Spot>) -> Value {
+    pub(crate) fn to_json(&self, messages: Messages, language: Language, spot: Option<&Spot>) -> Value {
         self.json_fields(messages, language, spot)
             .into_iter()
             .map(|(name, value)| (name.to_string(), value))
@@ -117,7 +112,7 @@ impl Finding {
 
     fn json_fields(
         &self,
-        messages: &Messages,
+        messages: Messages,
         language: Language,
         spot: Option<&Spot>,
     ) -> [(&'static str, Value); 11] {
@@ -131,7 +126,7 @@ impl Finding {
             .map(|call| json!({ "program": call.program, "line": call.line }))
             .collect();
         let message = match &self.hint {
-            Some(hint) => format!("{} ({hint})", words.message),
+            Some(hint) => Cow::Owned(format!("{} ({hint})", words.message)),
             None => words.message,
         };
         [

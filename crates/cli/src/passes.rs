@@ -16,7 +16,6 @@ use crate::speech::Speech;
 #[derive(Debug)]
 pub(crate) struct Passes {
     recorder: PassRecorder,
-    functions: &'static Functions,
     finder: LineFinder,
 }
 
@@ -25,7 +24,6 @@ impl Passes {
     pub(crate) fn new(execution: &Execution<'_>) -> Self {
         Self {
             recorder: PassRecorder::new(execution.interpreter().position()),
-            functions: Functions::load(),
             finder: LineFinder::default(),
         }
     }
@@ -33,12 +31,12 @@ impl Passes {
     /// The next command.
     #[inline]
     pub(crate) fn add(&mut self, command: &Command, execution: &Execution<'_>) {
-        let Self { recorder, functions, finder } = self;
+        let Self { recorder, finder } = self;
         recorder.add(command, |command| {
             let origin = command.origin;
             let text = execution.text_of(SourceId(origin.source));
             let block = finder.line(text, origin.source, origin.line);
-            facts(command, execution.interpreter(), functions, &block)
+            facts(command, execution.interpreter(), &block)
         });
     }
 
@@ -54,12 +52,12 @@ impl Passes {
 }
 
 /// What is known of the block that runs a cycle.
-fn facts(command: &Command, interpreter: &Interpreter, functions: &Functions, block: &[u8]) -> BlockFacts {
+fn facts(command: &Command, interpreter: &Interpreter, block: &[u8]) -> BlockFacts {
     let control = interpreter.control();
     let function = command
         .origin
         .cycle
-        .and_then(|cycle| functions.by_code(cycle.label.0, code_system(control), control.code_table))
+        .and_then(|cycle| Functions.by_code(cycle.label.0, code_system(control), control.code_table))
         .map_or("", |(name, _)| name);
     let wanted = parameters_of(function);
     let parameters = if wanted.is_empty() { None } else { Some(interpreter.parameters()) };
@@ -80,7 +78,7 @@ fn settings(
         let given = interpreter.given_parameters().iter().find(|given| given.parameter == *name);
         Some(Setting {
             name,
-            number: parameters.number(name)?,
+            number: parameters.number(name)?.to_string(),
             value: parameters.value(name),
             given: given.map(|given| GivenWord { text: given.word.clone(), line: given.line }),
         })

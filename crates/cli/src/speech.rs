@@ -1,28 +1,16 @@
 //! The words of the user interface, in the language of the user.
 
-use std::collections::BTreeMap;
 use std::io;
-use std::sync::LazyLock;
 
 use turnwright_control::{Functions, Language, Messages};
 
 use crate::arguments::Lang;
 
-/// `key → [English, Chinese]`, from `data/texts.toml`.
-static TEXTS: LazyLock<BTreeMap<String, [String; 2]>> = LazyLock::new(|| {
-    let table: BTreeMap<String, BTreeMap<String, String>> =
-        toml::from_str(include_str!("../../../data/texts.toml"))
-            .unwrap_or_else(|error| unreachable!("data/texts.toml is read by a test: {error}"));
-    table
-        .into_iter()
-        .map(|(key, mut words)| {
-            let texts = ["en", "zh"].map(|tag| words.remove(tag).unwrap_or_default());
-            (key, texts)
-        })
-        .collect()
-});
-
-static MESSAGES: LazyLock<Messages> = LazyLock::new(Messages::load);
+mod table {
+    //! Made of `data/texts.toml` by the build script: key, English and Chinese.
+    include!(concat!(env!("OUT_DIR"), "/texts.rs"));
+}
+use table::TEXTS;
 
 /// Both languages, English first, as every table of texts has them.
 pub(crate) const BOTH: [Language; 2] = [Language::English, Language::Chinese];
@@ -56,7 +44,8 @@ impl Speech {
     }
 
     fn lookup(self, key: &str) -> Option<&'static str> {
-        let [english, chinese] = TEXTS.get(key)?;
+        let index = TEXTS.binary_search_by_key(&key, |(known, _)| known).ok()?;
+        let [english, chinese] = TEXTS[index].1;
         Some(if self.language == Language::English { english } else { chinese })
     }
 
@@ -67,13 +56,13 @@ impl Speech {
     }
 
     /// Diagnostics in words.
-    pub(crate) fn messages(self) -> &'static Messages {
-        &MESSAGES
+    pub(crate) const fn messages(self) -> Messages {
+        Messages
     }
 
     /// The code table.
-    pub(crate) fn functions(self) -> &'static Functions {
-        Functions::load()
+    pub(crate) const fn functions(self) -> Functions {
+        Functions
     }
 
     /// What the system says about a file, in the user's language where the case is a common one.
@@ -145,7 +134,10 @@ mod tests {
     #[test]
     fn every_estimate_and_kind_has_a_sentence() {
         for key in turnwright_motion::ESTIMATES.iter().chain(turnwright_motion::ESTIMATES_WITH_DYNAMICS) {
-            assert!(TEXTS.contains_key(&format!("estimate-{key}")), "{key}");
+            assert!(
+                Speech { language: Language::English }.lookup(&format!("estimate-{key}")).is_some(),
+                "{key}"
+            );
         }
     }
 

@@ -30,13 +30,12 @@ impl Switches {
             return Ok(switches);
         }
         let file = session.setup_path.as_ref().map_or(String::new(), |path| path.display().to_string());
-        let messages = Messages::load();
         let keys = |name: &str, file: &str| {
-            let known = messages.keys().find(|key| *key == name);
-            let numbered = || messages.by_id(name, session.control.alarm_ids);
+            let known = Messages.keys().find(|key| *key == name);
+            let numbered = || Messages.by_id(name, session.control.alarm_ids);
             let found = known.map_or_else(numbered, |key| vec![key]);
             let found: Vec<String> = found.into_iter().map(str::to_string).collect();
-            if found.is_empty() { Err(unknown(name, file, &messages)) } else { Ok(found) }
+            if found.is_empty() { Err(unknown(name, file)) } else { Ok(found) }
         };
         for (allowed, denied, file) in
             [(&checks.allow, &checks.deny, file.as_str()), (&machine.allow, &machine.deny, "")]
@@ -74,9 +73,9 @@ impl Switches {
     }
 }
 
-fn unknown(name: &str, file: &str, messages: &Messages) -> Finding {
+fn unknown(name: &str, file: &str) -> Finding {
     let finding = Finding::new(file, Diagnostic::error("unknown-check").with("name", name)).failed();
-    match nearest(name, messages.keys().chain([ALL])) {
+    match nearest(name, Messages.keys().chain([ALL])) {
         Some(near) => finding.with_hint(format!("{near}?")),
         None => finding,
     }

@@ -1,9 +1,10 @@
 //! The code table: which number names which function in G-code systems A, B and C, and what it is for.
 
-use std::collections::BTreeMap;
-use std::sync::OnceLock;
-
-use serde::Deserialize;
+mod table {
+    //! Made of `data/functions.toml` by the build script.
+    use super::{Codes, FunctionEntry, Texts};
+    include!(concat!(env!("OUT_DIR"), "/functions.rs"));
+}
 
 /// Which of the three code tables a control uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,48 +28,42 @@ impl Group {
     pub const MOTION: Self = Self(1);
 }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 struct Texts {
-    name: String,
-    text: String,
+    name: &'static str,
+    text: &'static str,
 }
 
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 struct Codes {
-    a: Option<String>,
-    b: Option<String>,
-    c: Option<String>,
+    a: Option<&'static str>,
+    b: Option<&'static str>,
+    c: Option<&'static str>,
 }
 
 /// A function of the code table.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct FunctionEntry {
     codes: Codes,
-    group: String,
-    only: Option<Vec<String>>,
-    #[serde(default)]
-    not_on: Vec<String>,
+    group: &'static str,
+    only: Option<&'static [&'static str]>,
+    not_on: &'static [&'static str],
     /// What it does cannot be told from a program: it is refused for good.
-    #[serde(default)]
     pub outside_scope: bool,
-    only_with: Option<String>,
+    only_with: Option<&'static str>,
     /// Formats, with the letters of system A.
-    #[serde(default)]
-    pub forms: Vec<String>,
+    pub forms: &'static [&'static str],
     en: Texts,
     zh: Texts,
 }
 
 impl FunctionEntry {
     /// Its code in a system, as text (`G71`).
-    pub fn code(&self, system: CodeSystem) -> Option<&str> {
+    pub fn code(&self, system: CodeSystem) -> Option<&'static str> {
         match system {
-            CodeSystem::A => self.codes.a.as_deref(),
-            CodeSystem::B => self.codes.b.as_deref(),
-            CodeSystem::C => self.codes.c.as_deref(),
+            CodeSystem::A => self.codes.a,
+            CodeSystem::B => self.codes.b,
+            CodeSystem::C => self.codes.c,
         }
     }
 
@@ -79,71 +74,61 @@ impl FunctionEntry {
 
     /// Whether a control has it, by the name of its code table.
     pub fn is_on(&self, control: &str) -> bool {
-        self.only.as_ref().is_none_or(|only| only.iter().any(|name| name == control))
-            && !self.not_on.iter().any(|name| name == control)
+        self.only.is_none_or(|only| only.contains(&control)) && !self.not_on.contains(&control)
     }
 
     /// The parameter that must be set for its code to name it; another function has the code otherwise.
-    pub fn only_with(&self) -> Option<&str> {
-        self.only_with.as_deref()
+    pub const fn only_with(&self) -> Option<&'static str> {
+        self.only_with
     }
 
     /// Its name in a language.
-    pub fn name(&self, language: crate::Language) -> &str {
+    pub const fn name(&self, language: crate::Language) -> &'static str {
         match language {
-            crate::Language::English => &self.en.name,
-            crate::Language::Chinese => &self.zh.name,
+            crate::Language::English => self.en.name,
+            crate::Language::Chinese => self.zh.name,
         }
     }
 
     /// What it does, in a language.
-    pub fn text(&self, language: crate::Language) -> &str {
+    pub const fn text(&self, language: crate::Language) -> &'static str {
         match language {
-            crate::Language::English => &self.en.text,
-            crate::Language::Chinese => &self.zh.text,
+            crate::Language::English => self.en.text,
+            crate::Language::Chinese => self.zh.text,
         }
     }
 }
 
-/// All functions, by name.
-#[derive(Clone, Debug)]
-pub struct Functions {
-    entries: BTreeMap<String, FunctionEntry>,
-}
+/// All functions, by name: `data/functions.toml`, compiled in.
+#[derive(Clone, Copy, Debug)]
+pub struct Functions;
 
 impl Functions {
-    /// The table; read when it is first asked for.
-    ///
-    /// # Panics
-    /// Never with the data compiled in; a test reads it.
-    pub fn load() -> &'static Self {
-        static TABLE: OnceLock<Functions> = OnceLock::new();
-        TABLE.get_or_init(|| {
-            let entries = toml::from_str(include_str!("../../../data/functions.toml"))
-                .unwrap_or_else(|error| unreachable!("data/functions.toml is read by a test: {error}"));
-            Self { entries }
-        })
-    }
-
-    /// Names and entries.
-    pub fn iter(&self) -> impl Iterator<Item = (&str, &FunctionEntry)> {
-        self.entries.iter().map(|(name, entry)| (name.as_str(), entry))
+    /// Names and entries, sorted by name.
+    pub fn iter(self) -> impl Iterator<Item = (&'static str, &'static FunctionEntry)> {
+        table::ENTRIES.iter().map(|(name, entry)| (*name, entry))
     }
 
     /// A function by name.
-    pub fn get(&self, name: &str) -> Option<&FunctionEntry> {
-        self.entries.get(name)
+    pub fn get(self, name: &str) -> Option<&'static FunctionEntry> {
+        let index = table::ENTRIES.binary_search_by_key(&name, |(known, _)| known).ok()?;
+        Some(&table::ENTRIES[index].1)
     }
 
     /// Whether any entry says something about a control.
-    pub fn knows(&self, control: &str) -> bool {
-        self.entries
-            .values()
-            .any(|entry| entry.only.iter().flatten().chain(&entry.not_on).any(|name| name == control))
+    pub fn knows(self, control: &str) -> bool {
+        self.iter().any(|(_, entry)| {
+            entry.only.is_some_and(|only| only.contains(&control)) || entry.not_on.contains(&control)
+        })
     }
 
     /// The function that a code (times ten) names on a control, by the name of its code table.
-    pub fn by_code(&self, code: u16, system: CodeSystem, control: &str) -> Option<(&str, &FunctionEntry)> {
+    pub fn by_code(
+        self,
+        code: u16,
+        system: CodeSystem,
+        control: &str,
+    ) -> Option<(&'static str, &'static FunctionEntry)> {
         let named = self.iter().filter(|(_, entry)| {
             entry.is_on(control)
                 && entry
@@ -194,7 +179,7 @@ mod tests {
 
     #[test]
     fn every_code_of_the_three_systems_is_in_its_group() {
-        let functions = Functions::load();
+        let functions = Functions;
         let mut count = 0;
         for (group, rows) in GROUPS.iter().copied().chain([(0, ONE_SHOT)]) {
             for row in rows.split_whitespace() {

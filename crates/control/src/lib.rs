@@ -181,8 +181,7 @@ impl Control {
         let fault = |error: toml::de::Error| ControlFault::Data(format!("{name}: {error}"));
         let summary = summary.map_or_else(Default::default, |words| [words.en, words.zh]);
         let map = file.parameter_map.unwrap_or_default();
-        let functions = Functions::load();
-        let code_table = lineage.into_iter().find(|name| functions.knows(name)).unwrap_or(name);
+        let code_table = lineage.into_iter().find(|name| Functions.knows(name)).unwrap_or(name);
         Ok(Self {
             name,
             code_table,
@@ -244,7 +243,7 @@ mod tests {
         assert_eq!(ours.policies.escape_speed, policy::EscapeSpeed::Rapid);
         assert_eq!(ours.policies.arc_end_error, base.policies.arc_end_error);
         let codes = |control: &Control| -> Vec<&str> {
-            let table = Functions::load().iter();
+            let table = Functions.iter();
             table.filter(|(_, entry)| entry.is_on(control.code_table)).map(|(name, _)| name).collect()
         };
         assert_eq!(codes(&ours), codes(&base));

@@ -1,13 +1,19 @@
 //! The words of diagnostics, in English and Chinese, and the numbers that controls print for them.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
-use serde::Deserialize;
 use turnwright_diagnostics::{Argument, Diagnostic};
 
 use crate::Functions;
 use crate::policy::AlarmIds;
+
+mod table {
+    //! Made of `data/alarms.toml` by the build script.
+    use std::borrow::Cow;
+
+    use super::{Entry, Ids, MessageText, RaisedBy};
+    include!(concat!(env!("OUT_DIR"), "/messages.rs"));
+}
 
 /// A language that every text exists in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,29 +26,26 @@ pub enum Language {
 }
 
 /// A diagnostic in words.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MessageText {
     /// What is wrong.
-    pub message: String,
+    pub message: Cow<'static, str>,
     /// Why.
-    pub cause: String,
+    pub cause: Cow<'static, str>,
     /// What to do.
-    pub remedy: String,
+    pub remedy: Cow<'static, str>,
 }
 
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 struct Ids {
-    three: Option<String>,
-    four: Option<String>,
-    named: Option<String>,
-    own: Option<String>,
+    three: Option<&'static str>,
+    four: Option<&'static str>,
+    named: Option<&'static str>,
+    own: Option<&'static str>,
 }
 
 /// What raises a diagnostic that no program in the fixtures can raise; the head of `data/alarms.toml` tells more.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RaisedBy {
     /// Editing, searching, MDI and manual work at the panel.
     Operator,
@@ -75,51 +78,42 @@ impl RaisedBy {
     }
 }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[derive(Clone, Debug)]
 struct Entry {
     ids: Ids,
-    #[serde(default)]
     raised_by: Option<RaisedBy>,
     en: MessageText,
     zh: MessageText,
 }
 
-/// All texts. Reading them takes a millisecond: load once, and only when there is something to say.
-#[derive(Clone, Debug)]
-pub struct Messages {
-    entries: BTreeMap<String, Entry>,
-}
+/// All texts of diagnostics: `data/alarms.toml`, compiled in.
+#[derive(Clone, Copy, Debug)]
+pub struct Messages;
 
 impl Messages {
-    /// Reads the table.
-    ///
-    /// # Panics
-    /// Never with the data compiled in; a test reads it.
-    pub fn load() -> Self {
-        let entries = toml::from_str(include_str!("../../../data/alarms.toml"))
-            .unwrap_or_else(|error| unreachable!("data/alarms.toml is read by a test: {error}"));
-        Self { entries }
+    fn entry(key: &str) -> Option<&'static Entry> {
+        let index = table::ENTRIES.binary_search_by_key(&key, |(known, _)| known).ok()?;
+        Some(&table::ENTRIES[index].1)
     }
 
-    /// All keys.
-    pub fn keys(&self) -> impl Iterator<Item = &str> {
-        self.entries.keys().map(String::as_str)
+    /// All keys, sorted.
+    pub fn keys(self) -> impl Iterator<Item = &'static str> {
+        table::ENTRIES.iter().map(|(key, _)| *key)
     }
 
     /// The number of a diagnostic: the control's own where it has one, else ours.
-    pub fn id(&self, key: &str, ids: AlarmIds) -> Option<&str> {
-        let entry = &self.entries.get(key)?.ids;
+    pub fn id(self, key: &str, ids: AlarmIds) -> Option<&'static str> {
+        let entry = &Self::entry(key)?.ids;
         let own = match ids {
-            AlarmIds::Three => &entry.three,
-            AlarmIds::Four => &entry.four,
-            AlarmIds::Named => &entry.named,
+            AlarmIds::Three => entry.three,
+            AlarmIds::Four => entry.four,
+            AlarmIds::Named => entry.named,
         };
-        own.as_deref().or(entry.own.as_deref())
+        own.or(entry.own)
     }
 
     /// The number of this diagnostic; the number of an alarm that the program raised is part of it.
-    pub fn id_of(&self, diagnostic: &Diagnostic, ids: AlarmIds) -> Option<Cow<'_, str>> {
+    pub fn id_of(self, diagnostic: &Diagnostic, ids: AlarmIds) -> Option<Cow<'static, str>> {
         let id = self.id(diagnostic.key, ids)?;
         Some(if id.contains('{') {
             Cow::Owned(fill(id, &diagnostic.arguments, Language::English))
@@ -129,28 +123,38 @@ impl Messages {
     }
 
     /// The number of ours that stands where a control has none.
-    pub fn own_id(&self, key: &str) -> Option<&str> {
-        self.entries.get(key)?.ids.own.as_deref()
+    pub fn own_id(self, key: &str) -> Option<&'static str> {
+        Self::entry(key)?.ids.own
     }
 
     /// What raises it, when that is no program of the fixtures.
-    pub fn raised_by(&self, key: &str) -> Option<RaisedBy> {
-        self.entries.get(key)?.raised_by
+    pub fn raised_by(self, key: &str) -> Option<RaisedBy> {
+        Self::entry(key)?.raised_by
     }
 
     /// Keys that a number names on a control (several conditions may share one number).
-    pub fn by_id(&self, number: &str, ids: AlarmIds) -> Vec<&str> {
+    pub fn by_id(self, number: &str, ids: AlarmIds) -> Vec<&'static str> {
         let wanted = number.trim().to_ascii_uppercase();
         self.keys().filter(|key| self.id(key, ids).is_some_and(|id| is_same_id(id, &wanted))).collect()
     }
 
     /// A diagnostic in words, with its arguments put in.
-    pub fn text(&self, diagnostic: &Diagnostic, language: Language) -> MessageText {
+    pub fn text(self, diagnostic: &Diagnostic, language: Language) -> MessageText {
         let Some(raw) = self.raw(diagnostic.key, language) else {
-            let key = diagnostic.key.to_string();
-            return MessageText { message: key, cause: String::new(), remedy: String::new() };
+            let nothing = Cow::Borrowed("");
+            return MessageText {
+                message: Cow::Borrowed(diagnostic.key),
+                cause: nothing.clone(),
+                remedy: nothing,
+            };
         };
-        let fill = |text: &str| fill(text, &diagnostic.arguments, language);
+        let fill = |text: &Cow<'static, str>| {
+            if text.contains('{') {
+                Cow::Owned(fill(text, &diagnostic.arguments, language))
+            } else {
+                text.clone()
+            }
+        };
         MessageText { message: fill(&raw.message), cause: fill(&raw.cause), remedy: fill(&raw.remedy) }
     }
 
@@ -158,8 +162,8 @@ impl Messages {
     pub const OF_PROGRAM: &str = "macro-user-alarm";
 
     /// The words behind a key, arguments still in braces.
-    pub fn raw(&self, key: &str, language: Language) -> Option<&MessageText> {
-        let entry = self.entries.get(key)?;
+    pub fn raw(self, key: &str, language: Language) -> Option<&'static MessageText> {
+        let entry = Self::entry(key)?;
         Some(match language {
             Language::English => &entry.en,
             Language::Chinese => &entry.zh,
@@ -199,7 +203,7 @@ fn fill(text: &str, arguments: &[(&'static str, Argument)], language: Language) 
             Some((_, Argument::Integer(value))) => out.push_str(&value.to_string()),
             Some((_, Argument::Length(value))) => out.push_str(&value.to_string()),
             Some((_, Argument::Function(key))) => {
-                let entry = Functions::load().get(key);
+                let entry = Functions.get(key);
                 out.push_str(entry.map_or(key, |entry| entry.name(language)));
             }
             None => out.push('?'),

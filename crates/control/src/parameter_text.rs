@@ -409,7 +409,7 @@ mod tests {
             let mut setup = Setup::default();
             let mut words = BTreeMap::new();
             for (at, (address, _, parameter, _)) in control.parameters.all().into_iter().enumerate() {
-                let value = match parameter.unit.as_str() {
+                let value = match parameter.unit {
                     "bit" => (at % 2) as f64,
                     "mm" | "deg" => at as f64 * 0.25 - 7.0,
                     _ => at as f64,

@@ -1,11 +1,16 @@
 //! Parameters: named by meaning, numbered by control.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::OnceLock;
+use std::collections::BTreeSet;
 
-use serde::Deserialize;
+use table::TABLE;
 
 use crate::{Language, nearest};
+
+mod table {
+    //! Made of `data/parameters.toml` by the build script.
+    use super::{Acts, Parameter, Texts};
+    include!(concat!(env!("OUT_DIR"), "/parameters.rs"));
+}
 
 /// An axis of the machine, for values that each axis has its own of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -44,16 +49,14 @@ impl Axis {
     }
 }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 struct Texts {
-    name: String,
-    effect: String,
+    name: &'static str,
+    effect: &'static str,
 }
 
 /// Why a parameter changes no run here; the head of `data/parameters.toml` tells more.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Acts {
     /// Only the moving machine shows it.
     Live,
@@ -64,20 +67,15 @@ pub enum Acts {
 }
 
 /// A parameter as `data/parameters.toml` has it.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct Parameter {
     /// Unit of its value: `bit`, `count`, `mm`, …
-    pub unit: String,
-    numbers: BTreeMap<String, String>,
+    pub unit: &'static str,
+    /// By the name of a map, what controls with that map call it.
+    numbers: &'static [(&'static str, &'static str)],
     default: f64,
     /// It has one value for each axis.
-    #[serde(default)]
     per_axis: bool,
-    #[serde(default)]
-    #[expect(dead_code, reason = "kept in the data for readers")]
-    certainty: Option<String>,
-    #[serde(default)]
     acts: Option<Acts>,
     en: Texts,
     zh: Texts,
@@ -90,10 +88,10 @@ impl Parameter {
     }
 
     /// Its name in a language.
-    pub fn name(&self, language: Language) -> &str {
+    pub const fn name(&self, language: Language) -> &'static str {
         match language {
-            Language::English => &self.en.name,
-            Language::Chinese => &self.zh.name,
+            Language::English => self.en.name,
+            Language::Chinese => self.zh.name,
         }
     }
 
@@ -108,11 +106,16 @@ impl Parameter {
     }
 
     /// What it changes, in a language.
-    pub fn effect(&self, language: Language) -> &str {
+    pub const fn effect(&self, language: Language) -> &'static str {
         match language {
-            Language::English => &self.en.effect,
-            Language::Chinese => &self.zh.effect,
+            Language::English => self.en.effect,
+            Language::Chinese => self.zh.effect,
         }
+    }
+
+    /// What controls with a map call it; a leading `!` marks a bit with the opposite sense.
+    fn printed(&self, map: &str) -> Option<&'static str> {
+        self.numbers.iter().find(|(known, _)| *known == map).map(|(_, number)| *number)
     }
 }
 
@@ -168,34 +171,28 @@ pub struct UnderNumber {
 #[derive(Clone, Debug)]
 pub struct Parameters {
     map: String,
-    /// A parameter that does not go by axes has its value in the first place.
-    values: BTreeMap<String, [f64; Axis::ALL.len()]>,
+    /// In the order of the table; one that does not go by axes has its value in every place.
+    values: Vec<[f64; Axis::ALL.len()]>,
     /// Names of those that were set, to whatever value.
-    stated: BTreeSet<String>,
+    stated: BTreeSet<&'static str>,
     /// Of those with a value for each axis, the axes beyond X and Z that were set.
-    stated_others: BTreeSet<(String, Axis)>,
+    stated_others: BTreeSet<(&'static str, Axis)>,
 }
 
-/// The table; read when it is first asked for.
-fn table() -> &'static BTreeMap<String, Parameter> {
-    static TABLE: OnceLock<BTreeMap<String, Parameter>> = OnceLock::new();
-    TABLE.get_or_init(|| {
-        toml::from_str(include_str!("../../../data/parameters.toml"))
-            .unwrap_or_else(|error| unreachable!("data/parameters.toml is read by a test: {error}"))
-    })
+/// Where a parameter stands in the table.
+fn place(name: &str) -> Option<usize> {
+    TABLE.binary_search_by_key(&name, |(known, _)| known).ok()
 }
 
 impl Parameters {
     /// The defaults of a parameter map, with a control's own values over them.
     pub(crate) fn load(map: &str, own: &toml::Table) -> Result<Self, String> {
-        let mut values = BTreeMap::new();
-        for (name, parameter) in table() {
-            values.insert(name.clone(), [parameter.default; Axis::ALL.len()]);
-        }
+        let mut values: Vec<_> =
+            TABLE.iter().map(|(_, parameter)| [parameter.default; Axis::ALL.len()]).collect();
         for (name, value) in own {
             let value = value.as_integer().map(|n| n as f64).or(value.as_float());
-            match (values.get_mut(name), value) {
-                (Some(slot), Some(value)) => slot.fill(value),
+            match (place(name), value) {
+                (Some(place), Some(value)) => values[place].fill(value),
                 _ => return Err(format!("parameter {name} is unknown or has no number")),
             }
         }
@@ -209,8 +206,9 @@ impl Parameters {
 
     /// The value that a parameter by name has for an axis.
     pub fn axis_value(&self, name: &str, axis: Axis) -> f64 {
-        debug_assert!(self.values.contains_key(name), "no parameter {name} in data/parameters.toml");
-        self.values.get(name).map_or(0.0, |values| values[axis as usize])
+        let place = place(name);
+        debug_assert!(place.is_some(), "no parameter {name} in data/parameters.toml");
+        place.map_or(0.0, |place| self.values[place][axis as usize])
     }
 
     /// A bit by name.
@@ -237,7 +235,7 @@ impl Parameters {
     pub fn set(&mut self, number: &str, value: &str) -> Result<(), ParameterFault> {
         let number = number.trim();
         let Some((name, parameter, axis)) = self.look_up(number) else {
-            let known = table().iter().filter(|(_, one)| one.numbers.contains_key(&self.map));
+            let known = TABLE.iter().filter(|(_, one)| one.printed(&self.map).is_some());
             let numbers: Vec<String> =
                 known.flat_map(|(name, one)| self.addresses(name, one)).map(|(n, _)| n).collect();
             let nearest = nearest(number, numbers.iter().map(String::as_str)).map(str::to_string);
@@ -247,14 +245,14 @@ impl Parameters {
             let example = format!("{number}.{}", Axis::ALL[0].letter());
             return Err(ParameterFault::Axis { number: number.to_string(), example });
         }
-        let printed = parameter.numbers.get(&self.map).map_or("", String::as_str);
+        let printed = parameter.printed(&self.map).unwrap_or_default();
         let fault = |expected| ParameterFault::Value {
             number: number.to_string(),
             value: value.to_string(),
             expected,
         };
         let parsed: f64 = value.trim().parse().map_err(|_| fault("a number"))?;
-        let parsed = match parameter.unit.as_str() {
+        let parsed = match parameter.unit {
             "bit" if parsed == 0.0 || parsed == 1.0 => {
                 if printed.starts_with('!') {
                     1.0 - parsed
@@ -270,14 +268,14 @@ impl Parameters {
             _ if parsed.is_finite() && parsed.abs() < 1e9 => parsed,
             _ => return Err(fault("a number in range")),
         };
-        self.stated.insert(name.clone());
+        self.stated.insert(name);
         if let Some(axis) = axis.filter(|axis| Axis::OTHERS.contains(axis)) {
-            self.stated_others.insert((name.clone(), axis));
+            self.stated_others.insert((name, axis));
         }
-        if let Some(values) = self.values.get_mut(name) {
+        if let Some(place) = place(name) {
             match axis {
-                Some(axis) => values[axis as usize] = parsed,
-                None => values.fill(parsed),
+                Some(axis) => self.values[place][axis as usize] = parsed,
+                None => self.values[place].fill(parsed),
             }
         }
         Ok(())
@@ -286,8 +284,8 @@ impl Parameters {
     /// What this control has under a number without bit and axis; `None` when nothing is known of it here.
     pub fn under_number(&self, number: u32) -> Option<UnderNumber> {
         let mut found = UnderNumber::default();
-        for (name, parameter) in table() {
-            let Some(printed) = parameter.numbers.get(&self.map) else { continue };
+        for (name, parameter) in TABLE {
+            let Some(printed) = parameter.printed(&self.map) else { continue };
             let (word, bit) = printed.trim_start_matches('!').split_once('#').unwrap_or((printed, ""));
             if word.parse() != Ok(number) {
                 continue;
@@ -301,13 +299,12 @@ impl Parameters {
     }
 
     /// The parameter that a number of this control names, and the axis when the number names one too.
-    fn look_up(&self, number: &str) -> Option<(&'static String, &'static Parameter, Option<Axis>)> {
+    fn look_up(&self, number: &str) -> Option<(&'static str, &'static Parameter, Option<Axis>)> {
         let of_number = |number: &str| {
-            table().iter().find(|(_, parameter)| {
-                parameter
-                    .numbers
-                    .get(&self.map)
-                    .is_some_and(|printed| normal(printed.trim_start_matches('!')) == normal(number))
+            let wanted = normal(number);
+            TABLE.iter().find(|(_, parameter)| {
+                let printed = parameter.printed(&self.map);
+                printed.is_some_and(|printed| normal(printed.trim_start_matches('!')) == wanted)
             })
         };
         let axis =
@@ -318,20 +315,16 @@ impl Parameters {
             let (name, parameter) = of_number(number)?;
             return parameter.per_axis.then_some((name, parameter, Some(axis)));
         }
-        of_number(number).map(|(name, parameter)| (name, parameter, None))
+        of_number(number).map(|(name, parameter)| (*name, parameter, None))
     }
 
     /// The numbers by which a parameter of this control is set, and the place of each value.
-    fn addresses(&self, name: &str, parameter: &Parameter) -> Vec<(String, Axis)> {
-        let Some(number) = parameter.numbers.get(&self.map).map(|number| number.trim_start_matches('!'))
-        else {
-            return Vec::new();
-        };
+    fn addresses(&self, name: &'static str, parameter: &Parameter) -> Vec<(String, Axis)> {
+        let Some(number) = parameter.printed(&self.map) else { return Vec::new() };
+        let number = number.trim_start_matches('!');
         if parameter.per_axis {
             // Of axes that few machines have, what somebody set.
-            let is_set = |axis| {
-                Axis::TURNING.contains(&axis) || self.stated_others.contains(&(name.to_string(), axis))
-            };
+            let is_set = |axis| Axis::TURNING.contains(&axis) || self.stated_others.contains(&(name, axis));
             let axes = Axis::ALL.into_iter().filter(|axis| is_set(*axis));
             axes.map(|axis| (format!("{number}.{}", axis.letter()), axis)).collect()
         } else {
@@ -340,42 +333,42 @@ impl Parameters {
     }
 
     /// The number that the control gives a parameter, without the mark of an inverted bit.
-    pub fn number(&self, name: &str) -> Option<String> {
-        let number = table().get(name)?.numbers.get(&self.map)?.trim_start_matches('!').to_string();
-        Some(number)
+    pub fn number(&self, name: &str) -> Option<&'static str> {
+        Some(TABLE[place(name)?].1.printed(&self.map)?.trim_start_matches('!'))
     }
 
     /// The value as the control's own screen has it: some bits have the opposite sense there.
     fn shown_value(&self, name: &str, parameter: &Parameter, axis: Axis) -> f64 {
         let value = self.axis_value(name, axis);
-        let is_inverted = parameter.numbers.get(&self.map).is_some_and(|number| number.starts_with('!'));
+        let is_inverted = parameter.printed(&self.map).is_some_and(|number| number.starts_with('!'));
         if is_inverted { 1.0 - value } else { value }
     }
 
     /// Sets a parameter by name, in the sense of its name: what data blocks of cycles do.
     pub fn set_by_name(&mut self, name: &str, value: f64) {
-        debug_assert!(self.values.contains_key(name), "no parameter {name} in data/parameters.toml");
-        if let Some(values) = self.values.get_mut(name) {
-            values.fill(value);
+        let place = place(name);
+        debug_assert!(place.is_some(), "no parameter {name} in data/parameters.toml");
+        if let Some(place) = place {
+            self.values[place].fill(value);
         }
     }
 
     /// The parameter with a number of this control, with its name; the value of the axis that the number names,
     /// else of the first.
-    pub fn find(&self, number: &str) -> Option<(String, Parameter, f64)> {
+    pub fn find(&self, number: &str) -> Option<(&'static str, &'static Parameter, f64)> {
         let (name, parameter, axis) = self.look_up(number)?;
         let value = self.shown_value(name, parameter, axis.unwrap_or(Axis::ALL[0]));
-        Some((name.clone(), parameter.clone(), value))
+        Some((name, parameter, value))
     }
 
     /// Every parameter of this control: number, name, table entry, value; for each axis where they differ by axis.
-    pub fn all(&self) -> Vec<(String, String, Parameter, f64)> {
-        let mut all: Vec<_> = table()
+    pub fn all(&self) -> Vec<(String, &'static str, &'static Parameter, f64)> {
+        let mut all: Vec<_> = TABLE
             .iter()
             .flat_map(|(name, parameter)| {
-                self.addresses(name, parameter).into_iter().map(|(number, axis)| {
+                self.addresses(name, parameter).into_iter().map(move |(number, axis)| {
                     let value = self.shown_value(name, parameter, axis);
-                    (number, name.clone(), parameter.clone(), value)
+                    (number, *name, parameter, value)
                 })
             })
             .collect();

@@ -363,7 +363,7 @@ impl Core {
 
     #[cold]
     fn refuse_code(&self, code: u16, word: &Word) -> Alarm {
-        let functions = turnwright_control::Functions::load();
+        let functions = turnwright_control::Functions;
         let quote = self.quote(word.start, word.end);
         match functions.by_code(code, self.dispatch.system, self.control.code_table) {
             Some((name, entry)) => {

@@ -71,7 +71,7 @@ pub(crate) fn codes_at_power_on(
     code_table: &str,
 ) -> [Option<u16>; GROUPS] {
     let mut codes = [None; GROUPS];
-    let functions = Functions::load();
+    let functions = Functions;
     let names = names_at_power_on(parameters, system).into_iter().flatten().chain(ALSO_AT_POWER_ON);
     for entry in names.filter_map(|name| functions.get(name)).filter(|entry| entry.is_on(code_table)) {
         if let Some(slot) = codes.get_mut(usize::from(entry.group().0)) {

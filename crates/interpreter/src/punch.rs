@@ -226,7 +226,7 @@ impl Interpreter {
             let has = |axis: &Axis| core.axes.machine.number(*axis).is_some();
             let row = ZeroRow::of(value);
             let number = zero.parameter().and_then(|name| core.control.parameters.number(name));
-            let stated = number.filter(|number| setup.parameters.contains_key(number));
+            let stated = number.filter(|number| setup.parameters.contains_key(*number));
             if let Some(number) = stated {
                 for axis in Axis::ALL.into_iter().filter(has) {
                     setup.set_parameter(&format!("{number}.{}", axis.letter()), value(axis));

@@ -56,7 +56,7 @@ fn shown() -> BTreeMap<String, BTreeSet<String>> {
 
 #[test]
 fn every_diagnostic_of_a_program_has_a_fixture() {
-    let (messages, shown, sources) = (Messages::load(), shown(), sources());
+    let (messages, shown, sources) = (Messages, shown(), sources());
     let mut wrong = Vec::new();
     for key in messages.keys() {
         let is_shown = shown.contains_key(key);
@@ -76,7 +76,7 @@ fn every_diagnostic_of_a_program_has_a_fixture() {
 
 #[test]
 fn our_own_numbers_are_given_once() {
-    let messages = Messages::load();
+    let messages = Messages;
     let mut given: BTreeMap<&str, &str> = BTreeMap::new();
     for key in messages.keys() {
         let Some(id) = messages.own_id(key) else { continue };
@@ -90,7 +90,7 @@ fn our_own_numbers_are_given_once() {
 
 #[test]
 fn whatever_a_program_raises_has_a_number_everywhere() {
-    let messages = Messages::load();
+    let messages = Messages;
     for key in messages.keys().filter(|key| messages.raised_by(key).is_none()) {
         for ids in [AlarmIds::Three, AlarmIds::Four, AlarmIds::Named] {
             assert!(messages.id(key, ids).is_some(), "{key} has no number where controls have {ids:?}");
@@ -100,7 +100,7 @@ fn whatever_a_program_raises_has_a_number_everywhere() {
 
 #[test]
 fn a_number_of_a_control_is_that_of_its_family() {
-    let messages = Messages::load();
+    let messages = Messages;
     let digits = |id: &str| id.bytes().all(|byte| byte.is_ascii_digit());
     for key in messages.keys() {
         if let Some(id) =
@@ -121,7 +121,7 @@ fn a_number_of_a_control_is_that_of_its_family() {
 
 #[test]
 fn every_parameter_is_read_or_says_why_not() {
-    let (sources, functions) = (sources(), Functions::load());
+    let (sources, functions) = (sources(), Functions);
     let mut parameters = BTreeMap::new();
     for name in control_names() {
         let control = Control::load(name).expect("a control");
@@ -133,8 +133,8 @@ fn every_parameter_is_read_or_says_why_not() {
         // Rows of equal parameters are read by a name that ends in their number.
         let row = name.trim_end_matches(|c: char| c.is_ascii_digit());
         let is_read = sources.contains(&format!("\"{name}\""))
-            || (row != name && sources.contains(&format!("\"{row}{{")))
-            || functions.iter().any(|(_, entry)| entry.only_with() == Some(name.as_str()));
+            || (row != *name && sources.contains(&format!("\"{row}{{")))
+            || functions.iter().any(|(_, entry)| entry.only_with() == Some(*name));
         if is_read == parameter.acts().is_some() {
             let what = if is_read { "is read, so no reason is needed" } else { "nothing reads it" };
             wrong.push(format!("{name}: {what}"));

@@ -33,12 +33,12 @@ fn names_in(text: &str) -> impl Iterator<Item = &str> {
 
 #[test]
 fn every_name_in_the_code_is_in_the_data() {
-    let messages = Messages::load();
+    let messages = Messages;
     let mut known: BTreeSet<String> = messages.keys().map(str::to_string).collect();
-    known.extend(Functions::load().iter().map(|(name, _)| name.to_string()));
+    known.extend(Functions.iter().map(|(name, _)| name.to_string()));
     for name in control_names() {
         let control = Control::load(name).expect("a control");
-        known.extend(control.parameters.all().into_iter().map(|(_, name, ..)| name));
+        known.extend(control.parameters.all().into_iter().map(|(_, name, ..)| name.to_string()));
     }
     let mut files = Vec::new();
     sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut files);
@@ -55,7 +55,7 @@ fn every_name_in_the_code_is_in_the_data() {
 
 #[test]
 fn every_function_that_runs_has_its_entry_and_every_entry_its_texts() {
-    let functions = Functions::load();
+    let functions = Functions;
     for name in implemented_functions() {
         let entry = functions.get(name).unwrap_or_else(|| panic!("{name} is not in data/functions.toml"));
         assert!(!entry.forms.is_empty(), "{name} has no form");
@@ -69,7 +69,7 @@ fn every_function_that_runs_has_its_entry_and_every_entry_its_texts() {
 
 #[test]
 fn every_message_has_words_in_both_languages_and_a_number_somewhere() {
-    let messages = Messages::load();
+    let messages = Messages;
     for key in messages.keys() {
         for language in [Language::English, Language::Chinese] {
             let text = messages.raw(key, language).unwrap_or_else(|| panic!("{key}"));

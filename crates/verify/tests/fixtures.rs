@@ -35,7 +35,7 @@ fn programs(text: &str) -> Vec<(usize, String, String, String)> {
     programs
 }
 
-fn told(setup: &str, program: &str, messages: &Messages) -> String {
+fn told(setup: &str, program: &str) -> String {
     let comments = program.lines().filter_map(|line| line.strip_prefix('(')?.strip_suffix(')'));
     let comments = comments.filter_map(setup_comment).map(|piece| piece.expect("a setup comment")).collect();
     let setup = Setup::with_comments(setup, comments).unwrap_or_else(|fault| panic!("{fault:?}"));
@@ -46,7 +46,7 @@ fn told(setup: &str, program: &str, messages: &Messages) -> String {
     findings.retain(|finding| !setup.checks.allow.iter().any(|name| name == finding.key));
     findings.sort_by_key(|finding| (finding.place.map_or(0, |place| place.line), finding.key));
     let line = |finding: &turnwright_diagnostics::Diagnostic| {
-        let id = messages.id(finding.key, AlarmIds::Four).unwrap_or("no number");
+        let id = Messages.id(finding.key, AlarmIds::Four).unwrap_or("no number");
         format!("{} {id} {}\n", finding.place.map_or(0, |place| place.line), finding.key)
     };
     findings.iter().map(line).collect()
@@ -55,12 +55,11 @@ fn told(setup: &str, program: &str, messages: &Messages) -> String {
 #[test]
 fn every_check_tells_what_it_should_and_nothing_else() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/verify");
-    let messages = Messages::load();
     let (mut failures, mut keys, mut count) = (Vec::new(), BTreeSet::new(), 0);
     for file in std::fs::read_dir(folder).expect("fixtures").map(|entry| entry.expect("an entry").path()) {
         let text = std::fs::read_to_string(&file).expect("readable");
         for (line, setup, program, expected) in programs(&text) {
-            let actual = told(&setup, &program, &messages);
+            let actual = told(&setup, &program);
             keys.extend(actual.lines().filter_map(|line| Some(line.split(' ').nth(2)?.to_string())));
             if actual != expected {
                 failures.push(format!("{}:{line}: expected\n{expected}but got\n{actual}", file.display()));

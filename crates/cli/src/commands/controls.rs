@@ -317,9 +317,9 @@ pub(super) fn parameters(control: &Control, speech: Speech) -> Vec<ShownParamete
             ShownParameter {
                 title: number.split_once('.').map_or(name.to_string(), |(_, axis)| format!("{name}, {axis}")),
                 effect: parameter.effect(speech.language).to_string(),
-                unit: parameter.unit,
+                unit: parameter.unit.to_string(),
                 value: value.to_string(),
-                key,
+                key: key.to_string(),
                 number,
             }
         })

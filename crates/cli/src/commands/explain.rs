@@ -361,7 +361,7 @@ mod tests {
     fn every_code_is_explained_on_every_control_that_has_it() {
         let mut asked = 0;
         for control in controls() {
-            for (name, entry) in turnwright_control::Functions::load().iter() {
+            for (name, entry) in turnwright_control::Functions.iter() {
                 let Some(code) = entry.code(code_system(&control)) else { continue };
                 if !entry.is_on(control.code_table) || entry.only_with().is_some() {
                     continue;
@@ -384,7 +384,7 @@ mod tests {
 
     #[test]
     fn every_alarm_is_explained_by_its_number_on_every_control() {
-        let messages = Messages::load();
+        let messages = Messages;
         for control in controls() {
             for key in messages.keys() {
                 match messages.id(key, control.alarm_ids) {
@@ -416,14 +416,14 @@ mod tests {
         let mut asked = 0;
         for control in controls() {
             for (number, key, parameter, _) in control.parameters.all() {
-                ask(&number, &control, "parameter", &key);
+                ask(&number, &control, "parameter", key);
                 if parameter.is_per_axis() {
                     // Without the axis: all of them.
                     let whole = number.rsplit_once('.').expect("an axis").0;
-                    ask(whole, &control, "parameter", &key);
+                    ask(whole, &control, "parameter", key);
                 }
                 if let Some((word, _)) = number.split_once('#') {
-                    ask(word, &control, "parameter", &key);
+                    ask(word, &control, "parameter", key);
                 }
                 asked += 1;
             }

@@ -134,12 +134,12 @@ impl RunReport {
             line,
             column,
             end_column,
-            message_en: english.message,
-            cause_en: english.cause,
-            remedy_en: english.remedy,
-            message_zh: chinese.message,
-            cause_zh: chinese.cause,
-            remedy_zh: chinese.remedy,
+            message_en: english.message.into_owned(),
+            cause_en: english.cause.into_owned(),
+            remedy_en: english.remedy.into_owned(),
+            message_zh: chinese.message.into_owned(),
+            cause_zh: chinese.cause.into_owned(),
+            remedy_zh: chinese.remedy.into_owned(),
             mark: self.mark_of(finding),
         }
     }

@@ -414,7 +414,7 @@ impl Dispatch {
         } else {
             CodeSystem::A
         };
-        let functions = Functions::load();
+        let functions = Functions;
         let mut table = Box::new([0u8; 10_000]);
         let mut groups = [0; ALL.len()];
         let entries =

@@ -1,8 +1,6 @@
 //! Running a program text in memory, for tests.
 #![allow(clippy::disallowed_methods, dead_code, reason = "tests read files; not every test uses everything")]
 
-use std::sync::OnceLock;
-
 use turnwright_canon::{Command, write_listing};
 use turnwright_control::{AxisPair, Control, Language, Messages, Setup};
 use turnwright_diagnostics::{Diagnostic, SourceId};
@@ -145,17 +143,15 @@ impl Run {
 
     /// Diagnostics as a fixture shows them: `alarm PS0062 cut-depth-illegal 2:5-8 'U0.'`.
     pub fn diagnostics(&self) -> String {
-        static MESSAGES: OnceLock<Messages> = OnceLock::new();
-        let messages = MESSAGES.get_or_init(Messages::load);
         let mut out = String::new();
         for diagnostic in self.warnings.iter().chain(&self.alarm) {
-            let id = messages.id_of(diagnostic, self.control.alarm_ids).unwrap_or("?".into());
+            let id = Messages.id_of(diagnostic, self.control.alarm_ids).unwrap_or("?".into());
             let severity = format!("{:?}", diagnostic.severity).to_lowercase();
             let place = diagnostic.place.map_or(String::new(), |place| {
                 format!(" {}:{}-{}", place.line, place.column, place.end_column)
             });
             out.push_str(&format!("{severity} {id} {}{place}\n", diagnostic.key));
-            let raw = messages
+            let raw = Messages
                 .raw(diagnostic.key, Language::English)
                 .unwrap_or_else(|| panic!("{}", diagnostic.key));
             for name in raw.message.split('{').skip(1).filter_map(|part| part.split('}').next()) {

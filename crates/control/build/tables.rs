@@ -1,0 +1,126 @@
+//! Tables of `data/` as Rust constants: a program that starts reads no text.
+//!
+//! In: a TOML file of named entries. Out: the source of a constant slice of pairs, sorted by name. What an entry
+//! lacks, and what nobody asked it for, stops the build by its name.
+//!
+//! Deliberately not here: what the entries mean.
+
+use std::fmt::Debug;
+use std::fs;
+use std::path::Path;
+
+use toml::{Table, Value};
+
+/// One entry, or a table in it; asked for its keys one by one.
+pub(crate) struct Entry {
+    place: String,
+    table: Table,
+}
+
+impl Entry {
+    fn fault(&self, key: &str, what: &str) -> ! {
+        panic!("{}: {key} {what}", self.place)
+    }
+
+    fn expect<T>(&self, key: &str, what: &str, value: Option<T>) -> T {
+        value.unwrap_or_else(|| self.fault(key, what))
+    }
+
+    /// A text that must be there.
+    pub(crate) fn text(&mut self, key: &str) -> String {
+        let value = self.table.remove(key);
+        self.expect(key, "is no text, or missing", value.as_ref().and_then(Value::as_str).map(literal))
+    }
+
+    /// A text that may be missing.
+    pub(crate) fn optional_text(&mut self, key: &str) -> String {
+        if self.table.contains_key(key) { format!("Some({})", self.text(key)) } else { "None".to_string() }
+    }
+
+    /// A list of texts; a missing one is empty.
+    pub(crate) fn texts(&mut self, key: &str) -> String {
+        let Some(value) = self.table.remove(key) else { return "&[]".to_string() };
+        let texts: Option<Vec<String>> =
+            value.as_array().and_then(|values| values.iter().map(|one| one.as_str().map(literal)).collect());
+        format!("&[{}]", self.expect(key, "is no list of texts", texts).join(", "))
+    }
+
+    /// A list of texts that means something else when it is missing than when it is empty.
+    pub(crate) fn optional_texts(&mut self, key: &str) -> String {
+        if self.table.contains_key(key) { format!("Some({})", self.texts(key)) } else { "None".to_string() }
+    }
+
+    /// A number that must be there.
+    pub(crate) fn number(&mut self, key: &str) -> String {
+        let value = self.table.remove(key);
+        let number =
+            value.and_then(|value| value.as_float().or(value.as_integer().map(|whole| whole as f64)));
+        literal(self.expect(key, "is no number, or missing", number))
+    }
+
+    /// Yes or no; no when it is missing.
+    pub(crate) fn flag(&mut self, key: &str) -> String {
+        let value = self.table.remove(key).unwrap_or(Value::Boolean(false));
+        literal(self.expect(key, "is neither true nor false", value.as_bool()))
+    }
+
+    /// A variant of an enum, `Some(Acts::MachineFile)` of `machine-file`. The compiler knows whether it exists.
+    pub(crate) fn optional_variant(&mut self, key: &str, r#enum: &str) -> String {
+        let Some(value) = self.table.remove(key) else { return "None".to_string() };
+        let word = self.expect(key, "is no text", value.as_str());
+        let pascal: String =
+            word.split('-').map(|part| part[..1].to_ascii_uppercase() + &part[1..]).collect();
+        format!("Some({}::{pascal})", r#enum)
+    }
+
+    /// A table of texts, as pairs sorted by key.
+    pub(crate) fn pairs(&mut self, key: &str) -> String {
+        let mut inner = self.inner(key);
+        let keys: Vec<String> = inner.table.keys().cloned().collect();
+        let pairs: Vec<String> = keys.iter().map(|key| format!("({key:?}, {})", inner.text(key))).collect();
+        format!("&[{}]", pairs.join(", "))
+    }
+
+    /// A table that must be there.
+    pub(crate) fn inner(&mut self, key: &str) -> Self {
+        match self.table.remove(key) {
+            Some(Value::Table(table)) => Self { place: format!("{} {key}", self.place), table },
+            _ => self.fault(key, "is no table, or missing"),
+        }
+    }
+
+    /// Nothing may be left.
+    pub(crate) fn end(self) {
+        if let Some(key) = self.table.keys().next() {
+            self.fault(key, "is not known here");
+        }
+    }
+}
+
+fn literal(value: impl Debug) -> String {
+    format!("{value:?}")
+}
+
+/// The source of `const NAME: &[(&str, TYPE)]` with what `expression` makes of each entry of a file.
+pub(crate) fn constant(
+    file: &Path,
+    name: &str,
+    r#type: &str,
+    expression: fn(&mut Entry) -> String,
+) -> String {
+    println!("cargo::rerun-if-changed={}", file.display());
+    let text = fs::read_to_string(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    let table: Table = text.parse().unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    let mut names: Vec<_> = table.into_iter().collect();
+    names.sort_by(|a, b| a.0.cmp(&b.0));
+    let mut source = format!("pub(crate) const {name}: &[(&str, {})] = &[\n", r#type);
+    for (name, value) in names {
+        let place = format!("{} [{name}]", file.file_name().unwrap_or_default().display());
+        let Value::Table(table) = value else { panic!("{place} is no table") };
+        let mut entry = Entry { place, table };
+        source.push_str(&format!("    ({name:?}, {}),\n", expression(&mut entry)));
+        entry.end();
+    }
+    source.push_str("];\n");
+    source
+}
