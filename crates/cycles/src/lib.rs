@@ -59,7 +59,7 @@ pub use pockets::{BottomEscape, Hump, PocketRequest, PocketRoughing, rough_pocke
 pub use roughing::{Coincident, EscapeSpeed, LevelOrigin, Monotony, RoughRequest, Roughing, rough};
 pub use semi_finish::{SemiFinished, rough_and_semi_finish, rough_pockets_and_semi_finish};
 pub use single::{
-    BoxCycle, BoxRequest, FirstAxis, ThreadOnce, ThreadOnceRequest, angle_of_start, box_cycle,
+    BoxCycle, BoxRequest, FirstAxis, RunIn, ThreadOnce, ThreadOnceRequest, angle_of_start, box_cycle,
     taper_crosses_start, thread_once,
 };
 pub use threading::{

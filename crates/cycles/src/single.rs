@@ -119,6 +119,17 @@ pub struct ThreadOnceRequest {
     pub run_out_depth: Option<Length>,
     /// Feed of the way out; rapid traverse when not given.
     pub pull_out_feed: Option<FeedPerMinute>,
+    /// How the tool comes down to the thread with the spindle turning; straight down before it when not given.
+    pub run_in: Option<RunIn>,
+}
+
+/// A slanted way to the depth of a thread, at the thread's lead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RunIn {
+    /// Along the axis of the infeed, positive; radius for X.
+    pub depth: Length,
+    /// Along the thread, positive.
+    pub length: Length,
 }
 
 /// The moves of a single thread pass, or of one for each start.
@@ -154,6 +165,10 @@ pub fn thread_once(request: ThreadOnceRequest) -> Result<ThreadOnce, Misuse> {
         start_angle,
     })?;
     line.fit_run_out(0.0, 0.0);
+    if let Some(RunIn { depth, length }) = request.run_in {
+        in_range(&[depth, length])?;
+        line.run_in = Some((depth.to_nm_float(), length.to_nm_float()));
+    }
     let (tool, starts) = (Tool::new(context.start), request.starts.max(1));
     Ok(ThreadOnce { line, part: Part::Infeed, tool, first_angle: start_angle, start: 0, starts })
 }
@@ -171,7 +186,7 @@ pub fn angle_of_start(first: Angle, start: u32, starts: u32) -> Angle {
 impl ThreadOnce {
     /// No more moves than this.
     pub const fn move_estimate(&self) -> u64 {
-        5 * self.starts as u64
+        6 * self.starts as u64
     }
 
     /// Passes it makes.
@@ -187,7 +202,10 @@ impl ThreadOnce {
 
     fn leg(&mut self) -> Option<ThreadLeg> {
         let leg = self.line.leg(self.part, 0.0, 0.0, self.start + 1)?;
-        self.part = self.part.after();
+        self.part = match self.part {
+            Part::Infeed if self.line.run_in.is_some() => Part::RunIn,
+            part => part.after(),
+        };
         if self.part == Part::Done && self.start + 1 < self.starts {
             (self.part, self.start) = (Part::Infeed, self.start + 1);
             self.line.start_angle = angle_of_start(self.first_angle, self.start, self.starts);
@@ -295,6 +313,7 @@ mod tests {
             run_out_angle_deg: 45,
             run_out_depth: None,
             pull_out_feed: None,
+            run_in: None,
         };
         let cycle = thread_once(request).expect("a thread");
         assert_eq!(cycle.run_out_shortened(), None);
@@ -306,6 +325,9 @@ mod tests {
         let steep = ThreadOnceRequest { run_out_depth: Some(Length::from_mm(1)), ..request };
         let steep = corners(thread_once(steep).expect("a thread"));
         assert_eq!(steep[1..3], [at(26, -18), at(28, -20)]);
+        let run_in = RunIn { depth: Length::from_mm(1), length: Length::from_mm(3) };
+        let gentle = thread_once(ThreadOnceRequest { run_in: Some(run_in), ..request }).expect("a thread");
+        assert_eq!(corners(gentle)[..3], [at(28, 1), at(26, -2), at(26, -18)]);
         let face = ThreadOnceRequest { along: CutAlong::X, end: at(12, -3), ..request };
         let face = corners(thread_once(face).expect("a thread"));
         assert_eq!(face, [at(32, -3), at(16, -3), at(12, -1), at(12, 1), at(32, 1)]);

@@ -348,6 +348,8 @@ impl Iterator for Threading {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Part {
     Infeed,
+    /// Down to the thread while the spindle turns; only where the line has a run-in.
+    RunIn,
     Thread,
     Chamfer,
     Out,
@@ -358,7 +360,7 @@ pub(crate) enum Part {
 impl Part {
     pub(crate) const fn after(self) -> Self {
         match self {
-            Self::Infeed => Self::Thread,
+            Self::Infeed | Self::RunIn => Self::Thread,
             Self::Thread => Self::Chamfer,
             Self::Chamfer => Self::Out,
             Self::Out => Self::Home,
@@ -413,6 +415,8 @@ pub(crate) struct ThreadLine {
     pull_out_feed: Option<FeedPerMinute>,
     lead: Lead,
     pub(crate) start_angle: Angle,
+    /// Way along u, away from the work, and along v.
+    pub(crate) run_in: Option<(f64, f64)>,
 }
 
 impl ThreadLine {
@@ -449,6 +453,7 @@ impl ThreadLine {
             pull_out_feed: words.pull_out_feed,
             lead,
             start_angle,
+            run_in: None,
         })
     }
 
@@ -475,7 +480,11 @@ impl ThreadLine {
         let begin = self.end_v - self.length + forward * advance;
         let leave = self.end_v - forward * self.run_out;
         let to = match part {
-            Part::Infeed => self.on_line(begin, stock),
+            Part::Infeed => {
+                let above = self.run_in.map_or(0.0, |(depth, _)| depth);
+                self.on_line(begin, stock + above)
+            }
+            Part::RunIn => self.on_line(begin + forward * self.run_in.map_or(0.0, |(_, way)| way), stock),
             Part::Thread => self.on_line(leave, stock),
             Part::Chamfer => {
                 let u = self.depth_axis(leave, stock) + self.outward * self.run_out * self.slope;
@@ -510,8 +519,12 @@ impl ThreadLine {
         let rapid = |phase| CycleMove { action: self.context.rapid(to), phase, pass, element: None };
         match (part, self.pull_out_feed) {
             (Part::Infeed, _) => rapid(Phase::Infeed),
-            (Part::Thread, _) => threaded(self.lead, false, Phase::Thread),
-            (Part::Chamfer, _) => threaded(self.run_out_lead(), follows, Phase::Chamfer),
+            (Part::RunIn, _) => {
+                let slope = self.run_in.map_or(0.0, |(depth, way)| depth / way);
+                threaded(self.slanted_lead(slope), false, Phase::Thread)
+            }
+            (Part::Thread, _) => threaded(self.lead, self.run_in.is_some(), Phase::Thread),
+            (Part::Chamfer, _) => threaded(self.slanted_lead(self.slope), follows, Phase::Chamfer),
             (Part::Out, Some(feed)) => {
                 let feed = Feed::PerMinute(feed);
                 let action = Action::Feed { to, shape: Shape::Line, feed, others: None };
@@ -531,14 +544,14 @@ impl ThreadLine {
         self.plane.place_both_computed(self.depth_axis(v, stock), v)
     }
 
-    /// Lead along the longer axis of the run-out, so that v keeps the pace it has in the thread.
-    fn run_out_lead(&self) -> Lead {
+    /// Lead along the longer axis of a run-in or run-out, so that v keeps the pace it has in the thread.
+    fn slanted_lead(&self, slope: f64) -> Lead {
         let steep = (self.taper / self.length).abs();
-        if steep <= 1.0 && self.slope <= 1.0 {
+        if steep <= 1.0 && slope <= 1.0 {
             return self.lead;
         }
         let along_v = nm(self.lead.0) / steep.max(1.0);
-        let lead = (along_v * self.slope.max(1.0)).round().clamp(1.0, 1e16);
+        let lead = (along_v * slope.max(1.0)).round().clamp(1.0, 1e16);
         Lead(Length::from_nm(lead as i64))
     }
 }

@@ -848,6 +848,7 @@ fn no_thread_or_box_panics_or_runs_away() {
             run_out_angle_deg,
             run_out_depth: None,
             pull_out_feed: None,
+            run_in: None,
         };
         accepted.1 += i32::from(run(thread_once(once), 5, context.start));
         let first = dice.pick(&[FirstAxis::X, FirstAxis::Z]);

@@ -174,8 +174,8 @@ impl Cache {
 
     /// A block as a loop of statements sees it.
     #[inline]
-    pub(crate) fn quick(&self, id: BlockId) -> (Quick, Links) {
-        self.quick[id.place()]
+    pub(crate) fn quick(&self, id: BlockId) -> &(Quick, Links) {
+        &self.quick[id.place()]
     }
 
     /// Goes to a block that another leads to.

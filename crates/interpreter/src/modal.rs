@@ -38,6 +38,9 @@ pub(crate) struct SingleCycle {
     /// J and K of a thread: run-out across and along.
     pub(crate) run_out_depth: Option<Length>,
     pub(crate) run_out_length: Option<Length>,
+    /// D and E of a thread: run-in across and along.
+    pub(crate) run_in_depth: Option<Length>,
+    pub(crate) run_in_length: Option<Length>,
     /// Starts of a thread; 0 and 1 are one.
     pub(crate) starts: u32,
     /// The thread runs across the face.
@@ -178,6 +181,8 @@ pub(crate) struct Settings {
     /// Speed of leaving a thread, mm per minute; `None` is rapid traverse.
     pub(crate) thread_pull_out_feed: Option<Length>,
     pub(crate) run_out_tenths: u32,
+    /// Depth of a run-in that no word gives, radius.
+    pub(crate) run_in_depth: Length,
     pub(crate) run_out_angle_deg: u8,
     pub(crate) one_block_form: bool,
     pub(crate) cut_depth: Length,
@@ -342,6 +347,7 @@ impl Settings {
             thread_speed_check_off: bit("thread-speed-check-off"),
             thread_pull_out_feed: Some(mm("thread-pull-out-feed")).filter(|feed| feed.signum() > 0),
             run_out_tenths: count("thread-run-out"),
+            run_in_depth: mm("thread-run-in"),
             run_out_angle_deg: count("thread-run-out-angle").min(89) as u8,
             one_block_form: bit("one-block-cycle-form"),
             cut_depth: mm("cycle-depth-of-cut"),

@@ -131,21 +131,26 @@ impl Core {
             id = self.run_quick(id);
             self.at = self.cache.place(id);
             self.count_block()?;
-            self.count_idle(1)?;
             let (kept, skip) = self.cache.kept(id);
             if skip != 0 && skips(skip, environment) {
                 return Ok(self.go_on(environment)?);
             }
             match *kept {
-                Kept::Statement(statement) => self.run_statement(&statement, environment)?,
-                Kept::Blank => self.go_on(environment)?,
+                Kept::Statement(statement) => {
+                    self.count_idle(1)?;
+                    self.run_statement(&statement, environment)?;
+                }
+                Kept::Blank => {
+                    self.count_idle(1)?;
+                    self.go_on(environment)?;
+                }
                 Kept::Words { first, count, computed, plain } => {
                     self.cache.refill(block, first, count);
-                    self.count_idle(limits::IDLE_WORD_BLOCKS)?;
+                    self.count_idle(1 + limits::IDLE_WORD_BLOCKS)?;
                     if !computed.is_empty() {
                         self.macros.word_values.clear();
                         let may_be_passed = !self.is_plain || crate::plain::has_other_words(block);
-                        block.resolve_at(computed, |word, place| {
+                        block.resolve(computed, |word, place| {
                             let code = self.cache.code(first, place);
                             self.word_value(word, code, may_be_passed, environment)
                         })?;

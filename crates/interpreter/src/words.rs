@@ -70,22 +70,28 @@ impl Core {
     /// A length word by the decimal rule of the control.
     #[inline]
     pub(crate) fn length(&self, word: &Word) -> Result<Length, Alarm> {
-        let number = self.number(word)?;
-        let counts = !(number.has_point || self.settings.is_calculator);
-        if !(counts || self.modal.is_inch)
+        if let Value::Number(number) = word.value
+            && (number.has_point || self.settings.is_calculator)
+            && !self.modal.is_inch
             && let Some(nm) = self.millimetres(number)
             && nm.abs() < self.settings.length_limit_nm
         {
             return Ok(Length::from_nm(nm));
         }
-        self.length_of(word, number, counts, self.modal.increment(&self.settings))
+        self.length_with(word, self.modal.increment(&self.settings))
+    }
+
+    /// A length word whose value counts, or is long, large or missing.
+    #[cold]
+    fn length_with(&self, word: &Word, increment: LeastIncrement) -> Result<Length, Alarm> {
+        let number = self.number(word)?;
+        let counts = !(number.has_point || self.settings.is_calculator);
+        self.length_of(word, number, counts, increment)
     }
 
     /// A value of the offset tables, which may have an increment of their own.
     pub(crate) fn offset_length(&self, word: &Word) -> Result<Length, Alarm> {
-        let number = self.number(word)?;
-        let counts = !(number.has_point || self.settings.is_calculator);
-        self.length_of(word, number, counts, self.offset_increment())
+        self.length_with(word, self.offset_increment())
     }
 
     /// Millimetres in nanometres where little can go wrong; [`Core::length_of`] does the rest.
@@ -128,7 +134,6 @@ impl Core {
     }
 
     /// `counts`: the number counts least increments.
-    #[cold]
     fn length_of(
         &self,
         word: &Word,

@@ -134,17 +134,6 @@ pub struct Skip {
     pub words_kept: u8,
 }
 
-/// What an expression of a word came to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Resolved {
-    /// A number.
-    Number(Decimal),
-    /// Nothing: the word is as if it were not there.
-    Absent,
-    /// It is no expression but a name, and stays.
-    AsWritten,
-}
-
 /// One block, reused from block to block so that reading a program allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Block {
@@ -211,39 +200,27 @@ impl Block {
         }
     }
 
-    /// Gives the words what `value` makes of them, in order.
+    /// Gives the words at some places, in order, the numbers that `value` makes of them; a word that it makes nothing
+    /// of is taken out.
     ///
     /// # Errors
     /// The first error of `value`; the block is then of no more use.
     #[inline]
     pub fn resolve<E>(
         &mut self,
-        mut value: impl FnMut(&Word, usize) -> Result<Resolved, E>,
-    ) -> Result<(), E> {
-        self.resolve_at(0..self.words.len(), |word, place| value(word, place))
-    }
-
-    /// As [`Block::resolve`], for the words at some places.
-    ///
-    /// # Errors
-    /// As there.
-    #[inline]
-    pub fn resolve_at<E>(
-        &mut self,
         places: impl Iterator<Item = usize>,
-        mut value: impl FnMut(&Word, usize) -> Result<Resolved, E>,
+        mut value: impl FnMut(&Word, usize) -> Result<Option<Decimal>, E>,
     ) -> Result<(), E> {
         let mut has_gaps = false;
         for place in places {
             let Some(word) = self.words.get_mut(place) else { break };
-            match value(word, place)? {
-                Resolved::Number(number) => word.value = Value::Number(number),
-                Resolved::Absent => {
-                    word.value = Value::Missing;
+            word.value = match value(word, place)? {
+                Some(number) => Value::Number(number),
+                None => {
                     has_gaps = true;
+                    Value::Missing
                 }
-                Resolved::AsWritten => {}
-            }
+            };
         }
         if has_gaps {
             self.close_gaps();

@@ -20,7 +20,7 @@ mod number;
 mod scan;
 mod tree;
 
-pub use block::{Block, Extent, ExtentKind, Fault, FaultKind, Resolved, Skip, Value, Word};
+pub use block::{Block, Extent, ExtentKind, Fault, FaultKind, Skip, Value, Word};
 pub use expression::{
     BinaryOperator, Comparison, EXPRESSION_DEPTH_MAX, Expected, Expression, ExpressionFault, Function, Node,
     Statement, parse_expression, parse_statement,

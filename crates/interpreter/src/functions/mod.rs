@@ -246,7 +246,10 @@ impl Function {
 
     /// A turning, facing or thread cycle of one block.
     pub(crate) fn is_single_cycle(&self) -> bool {
-        matches!(self.name, "turning-cycle" | "thread-cycle" | "facing-cycle" | "rigid-thread-cycle")
+        matches!(
+            self.name,
+            "turning-cycle" | "thread-cycle" | "facing-cycle" | "rigid-thread-cycle" | "run-in-thread-cycle"
+        )
     }
 
     #[inline]
@@ -350,6 +353,7 @@ static ALL: &[&Function] = &[
     &single_cycles::TURNING_CYCLE,
     &single_cycles::THREAD_CYCLE,
     &single_cycles::RIGID_THREAD_CYCLE,
+    &single_cycles::RUN_IN_THREAD_CYCLE,
     &single_cycles::FACING_CYCLE,
     &finishing::FINISHING,
     &rough::ROUGH_TURNING,

@@ -18,8 +18,11 @@
 //! `G92.1` is G92 with the spindle led as an axis: it needs S, turns a spindle that stands clockwise, and stops it
 //! behind the cycle again, as `G32.1` does.
 //!
-//! Deliberately not here: `G92.2`, of whose run-in D and E no text at hand says along which axes they go, and `G92.3`, of
-//! whose equal crests none says how the tool moves.
+//! `G92.2` is G92 with a run-in: the tool goes down by D over the length E while it threads, and on without a stop.
+//! E lies along the thread, as its alarm compares E and K with the thread's length; so D lies across it, as J does. D has
+//! a default (5150), E has none; both stay in force as J and K do.
+//!
+//! Deliberately not here: `G92.3`, of whose equal crests no text at hand says how the tool moves.
 //!
 //! Source: single canned cycles of both families.
 
@@ -61,6 +64,14 @@ pub(super) static RIGID_THREAD_CYCLE: Function = Function::motion("rigid-thread-
     .with_lead()
     .repeating();
 
+pub(super) static RUN_IN_THREAD_CYCLE: Function = Function::motion("run-in-thread-cycle", |core, call| {
+    thread_with(core, call, b"RQLPDE", Core::cycle_run_in)
+})
+.with_letters(b"RQEIJKLPCD")
+.triggered_by(b"R")
+.with_lead()
+.repeating();
+
 fn rigid_thread_cycle(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     if core.present_rpm().0 == 0 {
         return Err(core.alarm_at("spindle-not-started", call.word));
@@ -97,6 +108,19 @@ fn thread_cycle(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
         ThreadCycleWords::Plain => b"RQ",
         ThreadCycleWords::StartsAndFace | ThreadCycleWords::StartsAndRepair => b"RQLP",
     };
+    thread_with(core, call, own, |_, _, _, _| Ok(None))
+}
+
+/// What the run-in of a thread is, from the block, the run-out along the thread and the end of the thread.
+type RunInOf = fn(
+    &mut Core,
+    &Call<'_>,
+    Length,
+    Position<turnwright_units::WorkTip>,
+) -> Result<Option<cycles::RunIn>, Alarm>;
+
+/// A thread cycle with its letters and its run-in.
+fn thread_with(core: &mut Core, call: &mut Call<'_>, own: &[u8], run_in: RunInOf) -> Result<(), Alarm> {
     core.refuse_strange_thread_letters(call, own, core.run_out_letters())?;
     core.thread_cycle_form(call)?;
     let is_face = core.modal.cycle.is_face_thread;
@@ -111,6 +135,7 @@ fn thread_cycle(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
         core.check_lead_in(end, lead, 0.0);
     }
     let (run_out, run_out_depth) = core.cycle_run_out(call, lead, end)?;
+    let run_in = run_in(core, call, run_out, end)?;
     let request = cycles::ThreadOnceRequest {
         context: core.cycle_context(Feed::PerRevolution(FeedPerRevolution(lead.0))),
         along: if is_face { cycles::CutAlong::X } else { cycles::CutAlong::Z },
@@ -123,6 +148,7 @@ fn thread_cycle(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
         run_out_angle_deg: core.settings.run_out_angle_deg,
         run_out_depth,
         pull_out_feed: core.settings.thread_pull_out_feed.map(FeedPerMinute),
+        run_in,
     };
     let cycle = cycles::thread_once(request).map_err(|fault| core.misuse(fault, call))?;
     if cycle.run_out_shortened().is_some() {
@@ -197,19 +223,50 @@ impl Core {
         cycle.run_out_depth = depth.or(cycle.run_out_depth);
         cycle.run_out_length = along.or(cycle.run_out_length);
         let words = multi_thread::RunOutWords { depth: cycle.run_out_depth, length: cycle.run_out_length };
-        let is_face_thread = cycle.is_face_thread;
         let (along, depth) = match self.run_out_by_words(words) {
             Some((along, depth)) => (along, Some(depth)),
             None => (run_out(lead, self.settings.run_out_tenths), None),
         };
-        let way = end - self.modal.position;
-        let thread = if is_face_thread { way.x.0 } else { way.z };
         let has_words = self.control.policies.run_out_words != RunOutWords::Absent;
-        if has_words && along > thread.abs() {
+        if has_words && along > self.cycle_thread_length(end) {
             let word = call.block.word(b'K').or(call.block.word(b'J')).or(call.word);
             return Err(self.alarm_at("run-out-too-long", word));
         }
         Ok((along, depth))
+    }
+
+    /// From the start point to the end, along the thread.
+    fn cycle_thread_length(&self, end: Position<turnwright_units::WorkTip>) -> Length {
+        let way = end - self.modal.position;
+        if self.modal.cycle.is_face_thread { way.x.0.abs() } else { way.z.abs() }
+    }
+
+    /// The run-in that D and E ask for.
+    fn cycle_run_in(
+        &mut self,
+        call: &Call<'_>,
+        run_out: Length,
+        end: Position<turnwright_units::WorkTip>,
+    ) -> Result<Option<cycles::RunIn>, Alarm> {
+        let [across, along] = [b'D', b'E'].map(|letter| call.block.word(letter));
+        let length = |word| self.unsigned_length(word);
+        let (depth, way) = (across.map(length).transpose()?, along.map(length).transpose()?);
+        let cycle = &mut self.modal.cycle;
+        cycle.run_in_depth = depth.or(cycle.run_in_depth);
+        cycle.run_in_length = way.or(cycle.run_in_length);
+        let depth = cycle.run_in_depth.unwrap_or(self.settings.run_in_depth);
+        let length = cycle.run_in_length.unwrap_or(Length::ZERO);
+        if depth.is_zero() {
+            return Err(self.alarm_at("run-in-zero-d", across.or(call.word)));
+        }
+        if length.is_zero() {
+            return Err(self.alarm_at("run-in-zero-e", along.or(call.word)));
+        }
+        if length + run_out > self.cycle_thread_length(end) {
+            let word = along.or(call.block.word(b'K')).or(call.word);
+            return Err(self.alarm_at("run-in-and-out-too-long", word));
+        }
+        Ok(Some(cycles::RunIn { depth, length }))
     }
 
     /// Length and depth of the run-out that J and K ask for.

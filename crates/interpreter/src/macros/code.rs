@@ -2,7 +2,7 @@
 //!
 //! In: the tree of an expression. Out: operations for one accumulator and a small stack. Variables with a fixed
 //! number become slots when they are compiled; everything else that `#` may name is asked of the caller, who
-//! knows the control's state ([`Outcome::Read`]).
+//! knows the control's state ([`Pause::Read`]).
 //!
 //! Source: arithmetic and logic operations of custom macro, both families.
 
@@ -90,16 +90,14 @@ impl Code {
     }
 }
 
-/// What running a piece of code came to.
+/// Why running a piece of code came to no value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Outcome {
-    /// The value; null stays null.
-    Value(f64),
+pub(crate) enum Pause {
     /// The caller must say what the variable of this number holds, and go on with [`Machine::resume`].
     Read(f64),
     /// The caller must round the value to what the word's address counts in, and go on in the same way.
     Round(f64),
-    /// As for [`Outcome::Read`], of a local variable that is an argument, with the point that its word lacked.
+    /// As for [`Pause::Read`], of a local variable that is an argument, with the point that its word lacked.
     AddPoint(u16),
     /// The value of a parameter is asked for in the same way: its number, bit and axis.
     Parameter(f64, f64, f64),
@@ -120,6 +118,7 @@ pub(crate) struct Machine {
     depth: usize,
     at: usize,
     end: usize,
+    pause: Pause,
 }
 
 impl Machine {
@@ -132,6 +131,7 @@ impl Machine {
             depth: 0,
             at: 0,
             end: 0,
+            pause: Pause::Round(0.0),
         }
     }
 
@@ -191,7 +191,7 @@ impl Machine {
 
     /// The value of code that is a single operation on variables that have a place of their own; `None` for other
     /// code, and where there is no value.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn at_once(&self, code: Code, variables: &Variables) -> Option<f64> {
         if !code.is_one_operation() {
             return None;
@@ -219,10 +219,7 @@ impl Machine {
         {
             return Some(value);
         }
-        match self.start(code, variables) {
-            Outcome::Value(value) => Some(value),
-            _ => None,
-        }
+        self.start(code, variables)
     }
 
     /// Whether running code twice gives the same twice, and asks nobody.
@@ -237,22 +234,22 @@ impl Machine {
         })
     }
 
-    /// Runs code from its start.
+    /// Runs code from its start; `None` when it pauses ([`Machine::why`]).
     #[inline]
-    pub(crate) fn start(&mut self, code: Code, variables: &Variables) -> Outcome {
+    pub(crate) fn start(&mut self, code: Code, variables: &Variables) -> Option<f64> {
         self.at = code.start as usize;
         self.end = code.end as usize;
         self.depth = 0;
         self.run(NULL, variables)
     }
 
-    /// Goes on with the value of the variable that was asked for.
-    pub(crate) fn resume(&mut self, value: f64, variables: &Variables) -> Outcome {
+    /// Goes on with what was asked for.
+    pub(crate) fn resume(&mut self, value: f64, variables: &Variables) -> Option<f64> {
         self.run(value, variables)
     }
 
     #[inline]
-    fn run(&mut self, mut value: f64, variables: &Variables) -> Outcome {
+    fn run(&mut self, mut value: f64, variables: &Variables) -> Option<f64> {
         let slots = variables.slots();
         let limit = self.arithmetic.rules.magnitude_max;
         let slot = |place: u16| number(slots[usize::from(place)]);
@@ -300,28 +297,15 @@ impl Machine {
                     value = self.arithmetic.compare(comparison, slots[usize::from(place)], constant);
                     continue;
                 }
-                Op::Read => {
-                    self.at += place + 1;
-                    return Outcome::Read(number(value));
-                }
-                Op::RoundToIncrement => {
-                    self.at += place + 1;
-                    return Outcome::Round(number(value));
-                }
-                Op::AddPoint(slot) => {
-                    self.at += place + 1;
-                    return Outcome::AddPoint(slot);
-                }
+                Op::Read => return self.pause(place, Pause::Read(number(value))),
+                Op::RoundToIncrement => return self.pause(place, Pause::Round(number(value))),
+                Op::AddPoint(slot) => return self.pause(place, Pause::AddPoint(slot)),
                 Op::Parameter => {
-                    self.at += place + 1;
                     self.depth -= 2;
                     let (number, bit) = (self.stack[self.depth], self.stack[self.depth + 1]);
-                    return Outcome::Parameter(number, bit, value);
+                    return self.pause(place, Pause::Parameter(number, bit, value));
                 }
-                Op::AxisNumber(letter) => {
-                    self.at += place + 1;
-                    return Outcome::AxisNumber(letter);
-                }
+                Op::AxisNumber(letter) => return self.pause(place, Pause::AxisNumber(letter)),
                 Op::AddConstant(constant) => value + constant,
                 Op::AddSlot(place) => value + slot(place),
                 Op::SubtractConstant(constant) => value - constant,
@@ -362,14 +346,25 @@ impl Machine {
             value = result;
         }
         self.at = self.end;
-        Outcome::Value(value)
+        Some(value)
     }
 
     /// The operation at a place behind the present one has no value.
     #[cold]
-    fn fault(&mut self, fault: CodeFault, place: usize) -> Outcome {
+    fn fault(&mut self, fault: CodeFault, place: usize) -> Option<f64> {
+        self.pause(place, Pause::Fault(fault))
+    }
+
+    /// The operation at a place behind the present one waits.
+    fn pause(&mut self, place: usize, pause: Pause) -> Option<f64> {
         self.at += place + 1;
-        Outcome::Fault(fault)
+        self.pause = pause;
+        None
+    }
+
+    /// Why the code that ran last has no value.
+    pub(crate) const fn why(&self) -> Pause {
+        self.pause
     }
 }
 

@@ -21,14 +21,14 @@ pub(crate) use arguments::Passed;
 use arithmetic::{ArcSine, Rules};
 pub(crate) use calls::{CallKind, CodeCalls, ModalCall, Program};
 pub(crate) use code::Code;
-use code::{Machine, Outcome};
+use code::{Machine, Pause};
 pub(crate) use quick::Quick;
 pub(crate) use statement::Statement;
 use turnwright_control::policy::{
     ArcSineRange, BareArgument, JoinedConditions, MacroFunctions, MacroNames, MacroPrecision, NullVariable,
 };
 use turnwright_control::{Control, Parameters};
-use turnwright_syntax::{Block, Decimal, Resolved, Value, Word, parse_expression};
+use turnwright_syntax::{Block, Decimal, Value, Word, parse_expression};
 pub(crate) use variables::{Locals, Variables, is_null, number};
 
 use crate::Environment;
@@ -155,35 +155,31 @@ impl Core {
         environment: &mut dyn Environment,
     ) -> Result<f64, Halt> {
         match self.macros.machine.start(code, &self.macros.variables) {
-            Outcome::Value(value) => Ok(value),
-            outcome => self.evaluate_rest(outcome, address, environment),
+            Some(value) => Ok(value),
+            None => self.evaluate_rest(address, environment),
         }
     }
 
     /// Gives code what it asks for until it has a value.
-    fn evaluate_rest(
-        &mut self,
-        mut outcome: Outcome,
-        address: Option<u8>,
-        environment: &mut dyn Environment,
-    ) -> Result<f64, Halt> {
+    fn evaluate_rest(&mut self, address: Option<u8>, environment: &mut dyn Environment) -> Result<f64, Halt> {
         loop {
-            let value = match outcome {
-                Outcome::Value(value) => return Ok(value),
-                Outcome::Read(variable) => self.read_variable(variable, environment)?,
-                Outcome::Round(value) => {
+            let value = match self.macros.machine.why() {
+                Pause::Read(variable) => self.read_variable(variable, environment)?,
+                Pause::Round(value) => {
                     let increment = address.map_or(1.0, |address| self.word_increment(address));
                     (value / increment).round() * increment
                 }
-                Outcome::AddPoint(slot) => self.with_point(slot),
-                Outcome::Parameter(number, bit, axis) => self.parameter_value(number, bit, axis)?,
-                Outcome::AxisNumber(letter) => self.axis_number(letter)?,
-                Outcome::Fault(fault) => {
+                Pause::AddPoint(slot) => self.with_point(slot),
+                Pause::Parameter(number, bit, axis) => self.parameter_value(number, bit, axis)?,
+                Pause::AxisNumber(letter) => self.axis_number(letter)?,
+                Pause::Fault(fault) => {
                     let place = self.macros.machine.fault_place();
                     return Err(self.code_fault(fault, place).into());
                 }
             };
-            outcome = self.macros.machine.resume(value, &self.macros.variables);
+            if let Some(value) = self.macros.machine.resume(value, &self.macros.variables) {
+                return Ok(value);
+            }
         }
     }
 
@@ -202,7 +198,10 @@ impl Core {
             false => self.name_axes(block, environment),
         };
         let result = match named.and_then(|()| Ok(self.compile_words(block, &mut codes)?)) {
-            Ok(()) => block.resolve(|word, place| self.word_value(word, codes[place], true, environment)),
+            Ok(()) => {
+                let computed = (0..codes.len()).filter(|place| codes[*place].computes());
+                block.resolve(computed, |word, place| self.word_value(word, codes[place], true, environment))
+            }
             Err(halt) => Err(halt),
         };
         self.macros.codes = codes;
@@ -245,22 +244,19 @@ impl Core {
         code: Code,
         may_be_passed: bool,
         environment: &mut dyn Environment,
-    ) -> Result<Resolved, Halt> {
-        if !code.computes() {
-            return Ok(Resolved::AsWritten);
-        }
+    ) -> Result<Option<Decimal>, Halt> {
         let value = match self.macros.machine.at_once(code, &self.macros.variables) {
             Some(value) => value,
             None => self.evaluate_all(code, Some(word.address), environment)?,
         };
         if is_null(value) && self.control.policies.null_variable == NullVariable::IsNothing {
-            return Ok(Resolved::Absent);
+            return Ok(None);
         }
         if may_be_passed {
             self.macros.word_values.push((word.start, value));
         }
         match Decimal::computed(number(value)) {
-            Some(decimal) => Ok(Resolved::Number(decimal)),
+            Some(decimal) => Ok(Some(decimal)),
             None => Err(self.alarm("number-too-long", word).into()),
         }
     }

@@ -47,8 +47,8 @@ impl Quick {
 
     /// Does what the block says; gives the one that comes next.
     #[inline]
-    fn run(self, links: Links, machine: &mut Machine, variables: &mut Variables) -> Option<BlockId> {
-        match self {
+    fn run(&self, links: &Links, machine: &mut Machine, variables: &mut Variables) -> Option<BlockId> {
+        match *self {
             Self::Assign { slot, value } => {
                 let next = links.next?;
                 let value = machine.value(value, variables)?;
@@ -57,7 +57,7 @@ impl Quick {
             }
             Self::While(condition) | Self::JumpIf(condition) => {
                 let holds = number(machine.value(condition, variables)?) != 0.0;
-                if holds == matches!(self, Self::While(_)) { links.next } else { links.jump }
+                if holds == matches!(*self, Self::While(_)) { links.next } else { links.jump }
             }
             Self::Jump => links.jump,
             Self::Next => links.next,
@@ -78,10 +78,11 @@ impl Core {
         }
         let blocks = self.options.blocks_max.saturating_sub(self.blocks_run);
         let most = blocks.min(self.options.idle_blocks_max.saturating_sub(self.idle_blocks));
+        let Self { cache, macros, .. } = self;
         let (mut id, mut run) = (id, 0);
         while run < most {
-            let (quick, links) = self.cache.quick(id);
-            let Some(next) = quick.run(links, &mut self.macros.machine, &mut self.macros.variables) else {
+            let (quick, links) = cache.quick(id);
+            let Some(next) = quick.run(links, &mut macros.machine, &mut macros.variables) else {
                 break;
             };
             (id, run) = (next, run + 1);
