@@ -519,7 +519,7 @@ fn findings(old: &Side, new: &Side, speech: Speech) -> Vec<FindingChange> {
         let mut told = BTreeMap::<_, Vec<_>>::new();
         for finding in &side.findings {
             let id = finding.id(speech.messages()).into_owned();
-            let message = finding.words(speech.messages(), speech.language).message;
+            let message = finding.words(speech.messages(), speech.language).message.into_owned();
             let line = finding.diagnostic.place.map_or(0, |place| place.line);
             let severity = crate::finding::severity_word(finding.diagnostic.severity);
             told.entry((id, message)).or_default().push((line, severity));
