@@ -87,3 +87,27 @@ fn sizes_that_cannot_be_are_refused_with_key_and_line() {
         assert!(told["message"].as_str().expect("a message").contains(words), "{told}");
     }
 }
+
+#[test]
+fn cutting_data_are_told_with_their_lines_and_drawn() {
+    let folder = Folder::new();
+    let program = folder.file("part.nc", PROGRAM);
+    folder.file("part.toml", SETUP);
+    let out = folder.path("out").display().to_string();
+    let ran = turnwright(&["run", &program, "--out", &out]);
+    assert!(ran.out.contains("depth of cut up to 5.000 mm (line 5, tool 1)"), "{}", ran.out);
+    assert!(ran.out.contains("estimated for 6061") && ran.out.contains("kW"), "{}", ran.out);
+    let drawn = std::fs::read_to_string(folder.path("out/cutting.svg")).expect("a picture");
+    assert!(drawn.matches("class=\"course\"").count() >= 6, "{drawn}");
+    let (_, report) = json(&["run", &program, "--format", "json"]);
+    let peaks = &report["cutting"]["peaks"];
+    assert_eq!(
+        (&peaks["depth_mm"]["line"], &report["cutting"]["model"]),
+        (&Value::from(5), &Value::from("kienzle"))
+    );
+    assert_eq!(report["cutting"]["lines"].as_array().expect("lines").len(), 2);
+    // Without a material there is no force, and the report says how to get it.
+    folder.file("part.toml", SETUP.replace("material = \"6061\"\n", ""));
+    let ran = turnwright(&["run", &program]);
+    assert!(ran.out.contains("no force and power") && !ran.out.contains("kW"), "{}", ran.out);
+}

@@ -1,5 +1,6 @@
 //! One file a format. A new format is a new file here and nothing else.
 
+pub mod cutting_svg;
 pub mod html;
 pub mod jsonl;
 pub mod overlay_svg;

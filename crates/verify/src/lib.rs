@@ -11,6 +11,7 @@ mod alignment;
 pub mod changes;
 mod checks;
 pub mod comparison;
+pub mod cutting;
 mod inference;
 pub mod measuring;
 pub mod part;

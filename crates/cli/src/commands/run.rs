@@ -7,12 +7,14 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use turnwright_export::formats::cutting_svg::write_cutting_svg;
 use turnwright_export::formats::jsonl;
 use turnwright_export::formats::part_svg::{PartDrawing, write_part_svg};
 use turnwright_export::formats::svg::{PictureOptions, write_svg};
 use turnwright_export::formats::time_svg::{TimePicture, write_time_svg};
 use turnwright_verify::Checks;
 use turnwright_verify::advice::Advisor;
+use turnwright_verify::cutting::CuttingRun;
 
 use super::plot::paint;
 use super::trace::{BUFFER_BYTES, write_alarm, write_json};
@@ -73,6 +75,9 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     };
     let (setup, asked) = (&checked.inferred.setup, &options.machine);
     measure.advisor = Some(Advisor::new(setup, rates));
+    // What cannot be was refused when the setup was read.
+    let material = session.setup.material().unwrap_or_default();
+    measure.cutting = Some(CuttingRun::new(setup.tools().unwrap_or_default(), material));
     let mut part = part::machined(&text, &session, asked, setup, Some(&mut measure), &mut look)?;
     progress.finish();
     measure.warnings().for_each(|warning| execution.warn(warning));
@@ -86,6 +91,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     let blocks = execution.interpreter().blocks_run();
     let stopped_at = execution.alarm().and_then(|alarm| alarm.place).map(|place| place.line);
     let file = text.name.clone();
+    let cutting = measure.cutting.take().map(CuttingRun::finish).unwrap_or_default();
     let mut report = RunReport {
         file,
         session,
@@ -96,6 +102,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         decimals,
         assumptions: checked.inferred.assumptions,
         part: part.and_then(part::drawn),
+        cutting,
         judged,
         blocks,
         stopped_at,
@@ -199,6 +206,11 @@ impl OutFolder {
             let drawn = write_time_svg(timeline, &picture);
             WholeFile::write(&folder.join("time.svg"), drawn.as_bytes(), printer.speech)?;
             names.push("time.svg");
+        }
+        if let Some(picture) = report.cutting_picture(printer.speech) {
+            let drawn = write_cutting_svg(&picture);
+            WholeFile::write(&folder.join("cutting.svg"), drawn.as_bytes(), printer.speech)?;
+            names.push("cutting.svg");
         }
         if let Some((part, shape)) = &report.part {
             let drawing = PartDrawing {

@@ -16,6 +16,7 @@ use turnwright_export::formats::time_svg::{TimePicture, write_time_svg};
 use turnwright_motion::{Kind, Totals};
 use turnwright_verify::Checks;
 use turnwright_verify::advice::Advisor;
+use turnwright_verify::cutting::CuttingData;
 
 use super::check::{Candidate, candidates};
 use super::plot::write_picture;
@@ -121,6 +122,7 @@ fn one(path: &Path, options: &Time, printer: &Printer) -> Result<Status, Fault> 
         passes: Passes::new(&execution).finish(),
         decimals: execution.interpreter().decimals(),
         assumptions: Vec::new(),
+        cutting: CuttingData::default(),
         judged: Vec::new(),
         part: None,
         blocks: execution.interpreter().blocks_run(),

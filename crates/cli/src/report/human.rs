@@ -117,6 +117,9 @@ impl RunReport {
         if let Some((_, shape)) = &self.part {
             rows.push((label("part"), part_text(shape, speech)));
         }
+        if let Some(text) = self.cutting_text(speech) {
+            rows.push((label("cutting-data"), text));
+        }
         if !self.judged.is_empty() {
             rows.push((label("part-sizes"), judged_text(&self.judged, speech)));
         }

@@ -33,6 +33,7 @@ impl RunReport {
             "operations": self.operations_json(speech),
             "cutting_extents": self.extents_json(),
             "part": self.part_json(),
+            "cutting": self.cutting_json(),
             "measures": judged_json(&self.judged),
             "spindle_rpm": self.measure.summary.rpm().map(|rpm| json!({ "min": rpm.min, "max": rpm.max })),
             "time": self.measure.time_json(),

@@ -1,5 +1,6 @@
 //! What a run was: gathered once, said in several forms.
 
+pub(crate) mod cutting;
 mod human;
 mod json;
 mod page;
@@ -23,6 +24,7 @@ use turnwright_stock::Removed;
 use turnwright_units::{Length, Position, WorkTip, write_millimetres};
 use turnwright_verify::Assumption;
 use turnwright_verify::advice::{Advice, Advisor};
+use turnwright_verify::cutting::{CuttingData, CuttingRun};
 use turnwright_verify::measuring::Judged;
 use turnwright_verify::part::Part;
 
@@ -52,6 +54,8 @@ pub(crate) struct Measure {
     removed: VecDeque<Option<Removed>>,
     /// Where time could be saved.
     pub(crate) advisor: Option<Advisor>,
+    /// What is asked of tools and spindle.
+    pub(crate) cutting: Option<CuttingRun>,
     /// What it found.
     pub(crate) advice: Vec<Advice>,
     dynamics: Option<Dynamics>,
@@ -84,6 +88,7 @@ impl Measure {
             short_lead_ins: BTreeMap::new(),
             removed: VecDeque::new(),
             advisor: None,
+            cutting: None,
             advice: Vec::new(),
             dynamics: rates.dynamics,
         }
@@ -125,6 +130,9 @@ impl Measure {
             let removed = self.removed.pop_front().flatten();
             if let Some(advisor) = &mut self.advisor {
                 advisor.add(&command, &timing, removed.as_ref());
+            }
+            if let Some(cutting) = &mut self.cutting {
+                cutting.add(&command, &timing, removed.as_ref());
             }
             if let Some(timeline) = &mut self.timeline {
                 if let Action::Tool { tool, .. } = command.action {
@@ -178,6 +186,8 @@ pub(crate) struct RunReport {
     pub(crate) assumptions: Vec<Assumption>,
     /// The part, and how it is drawn; nothing when there is no stock.
     pub(crate) part: Option<(Part, PartShape)>,
+    /// What is asked of tools and spindle.
+    pub(crate) cutting: CuttingData,
     /// The sizes that the setup file asks for, measured.
     pub(crate) judged: Vec<Judged>,
     /// Blocks executed.
