@@ -6,7 +6,9 @@ use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use turnwright_control::SectionSpot;
+use turnwright_export::mesh::CHORD_MM;
 
+use crate::output::PartFile;
 use crate::speech::Speech;
 
 /// Yellow headings and green literals, as the tools beside it have them.
@@ -63,6 +65,7 @@ pub(crate) enum Command {
     Check(Check),
     Trace(Trace),
     Plot(Plot),
+    Part(PartOptions),
     Motion(Motion),
     Time(Time),
     Measure(Measure),
@@ -150,14 +153,14 @@ pub(crate) enum TraceFormat {
 /// Runs a program and reports alarms, warnings, tools, extents, the part and the time.
 ///
 /// The program runs as on the control: cycles, corners, feeds and all. The part is cut out of the stock that the setup
-/// gives, or that the program seems to be written for. With --out the report, the pictures of path and part, and the
-/// trace are written into a folder.
+/// gives, or that the program seems to be written for. With --out the report, the path, the part (drawing, solid, mesh)
+/// and the trace are written into a folder.
 #[derive(Debug, Args)]
 #[command(after_long_help = examples("run"))]
 pub(crate) struct Run {
     /// The program; - for standard input
     pub(crate) file: PathBuf,
-    /// Folder for the report, the pictures and the trace; made when it does not exist
+    /// Folder for the report, the pictures, the part and the trace; made when it does not exist
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Leaves the view in space out of report.html, which is 0.6 MB smaller then
@@ -211,9 +214,32 @@ pub(crate) struct Trace {
 pub(crate) struct Plot {
     /// The program; - for standard input
     pub(crate) file: PathBuf,
-    /// The picture: a name that ends in .svg or .png
-    #[arg(short, long, value_name = "OUT.svg|OUT.png", value_parser = picture_name)]
+    /// The picture, a name that ends in .svg or .png, or the lines and arcs for CAD, .dxf
+    #[arg(short, long, value_name = "OUT.svg|OUT.png|OUT.dxf", value_parser = path_name)]
     pub(crate) output: PathBuf,
+    /// Form of the diagnostics
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) machine: Machine,
+}
+
+/// Writes the finished part: a drawing, a solid or a mesh.
+///
+/// The part is cut out of the stock that the setup gives, or that the program seems to be written for. Lengths are
+/// millimetres, the spindle axis is Z, zero is that of the program; glTF has metres, with the axis along X. Threads are
+/// plain surfaces with a name and a colour of their own.
+#[derive(Debug, Args)]
+#[command(name = "part", after_long_help = examples("part"))]
+pub(crate) struct PartOptions {
+    /// The program; - for standard input
+    pub(crate) file: PathBuf,
+    /// The part: .svg or .png the drawing, .step the solid, .stl or .glb triangles, .dxf the half-section
+    #[arg(short, long, value_name = "OUT.step|…", value_parser = part_name)]
+    pub(crate) output: PathBuf,
+    /// How far the triangles of .stl and .glb may lie off the part, mm
+    #[arg(long, value_name = "MM", default_value_t = CHORD_MM, value_parser = chord)]
+    pub(crate) chord: f64,
     /// Form of the diagnostics
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
     pub(crate) format: Format,
@@ -412,11 +438,12 @@ pub(crate) struct Man {
 }
 
 /// The commands that have a page.
-const COMMAND_NAMES: [&str; 14] = [
+const COMMAND_NAMES: [&str; 15] = [
     "run",
     "check",
     "trace",
     "plot",
+    "part",
     "motion",
     "time",
     "measure",
@@ -440,13 +467,30 @@ fn examples(command: &str) -> &'static str {
 }
 
 fn picture_name(text: &str) -> Result<PathBuf, String> {
+    named(text, &["svg", "png"]).ok_or("expected a name that ends in .svg or .png".to_string())
+}
+
+fn path_name(text: &str) -> Result<PathBuf, String> {
+    picture_name(text).or_else(|_| {
+        named(text, &["dxf"]).ok_or("expected a name that ends in .svg, .png or .dxf".to_string())
+    })
+}
+
+fn part_name(text: &str) -> Result<PathBuf, String> {
+    let ends = PartFile::ENDS.map(|(end, _)| end);
+    named(text, &ends).ok_or_else(|| format!("expected a name that ends in .{}", ends.join(", .")))
+}
+
+/// A path whose extension is one of these.
+fn named(text: &str, ends: &[&str]) -> Option<PathBuf> {
     let path = PathBuf::from(text);
     let is_known = |end: &&str| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(end));
-    if ["svg", "png"].iter().any(is_known) {
-        Ok(path)
-    } else {
-        Err("expected a name that ends in .svg or .png".to_string())
-    }
+    ends.iter().any(is_known).then_some(path)
+}
+
+fn chord(text: &str) -> Result<f64, String> {
+    let chord: Option<f64> = text.parse().ok().filter(|chord| (0.0001..=10.0).contains(chord));
+    chord.ok_or_else(|| "expected a length from 0.0001 to 10 mm".to_string())
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {

@@ -84,6 +84,6 @@ pub(crate) fn out_of_tolerance(judged: &[Judged]) -> impl Iterator<Item = Diagno
 
 /// How a part is drawn; nothing when nothing is left of it.
 pub(crate) fn drawn(part: Part) -> Option<(Part, PartShape)> {
-    let shape = PartShape::new(&part.section, &part.threads)?;
+    let shape = PartShape::new(&part.section, &part.plain, &part.threads)?;
     Some((part, shape))
 }

@@ -153,7 +153,20 @@ fn run_reports_and_writes_its_folder() {
     assert_eq!(ran.status, 1, "{}", ran.err);
     assert_eq!(
         support::names(&out),
-        ["part.svg", "path.png", "path.svg", "report.html", "time.svg", "times.csv", "trace.jsonl"]
+        [
+            "part.dxf",
+            "part.glb",
+            "part.step",
+            "part.stl",
+            "part.svg",
+            "path.dxf",
+            "path.png",
+            "path.svg",
+            "report.html",
+            "time.svg",
+            "times.csv",
+            "trace.jsonl"
+        ]
     );
     assert!(ran.out.contains("fanuc-0i-tf, the default"), "{}", ran.out);
     assert!(ran.out.contains("stopped the program at line 6"), "{}", ran.out);
@@ -182,7 +195,7 @@ fn run_reports_and_writes_its_folder() {
 fn plot_writes_the_picture_that_its_name_asks_for() {
     let folder = Folder::new();
     let program = folder.file("part.nc", CLEAN);
-    for (name, head) in [("a.svg", b"<svg".as_slice()), ("b.PNG", b"\x89PNG")] {
+    for (name, head) in [("a.svg", b"<svg".as_slice()), ("b.PNG", b"\x89PNG"), ("c.dxf", b"AC1009")] {
         let picture = folder.path(name);
         let ran = turnwright(&["plot", &program, "-o", &picture.display().to_string()]);
         assert_eq!(ran.status, 0, "{}", ran.err);
@@ -191,6 +204,49 @@ fn plot_writes_the_picture_that_its_name_asks_for() {
     }
     assert_eq!(turnwright(&["plot", &program, "-o", "c.jpg"]).status, 2);
     assert_eq!(turnwright(&["plot", &program]).status, 2);
+}
+
+#[test]
+fn a_part_is_written_in_the_form_that_its_name_asks_for() {
+    let folder = Folder::new();
+    let program = folder.file("part.nc", CLEAN);
+    let written = |name: &str, more: &[&str]| {
+        let target = folder.path(name).display().to_string();
+        let ran = turnwright(&[&["part", &program, "-o", &target], more].concat());
+        assert_eq!(ran.status, 0, "{}", ran.err);
+        std::fs::read(&target).expect(name)
+    };
+    for (name, head) in [
+        ("a.svg", b"<svg".as_slice()),
+        ("a.PNG", b"\x89PNG"),
+        ("a.step", b"ISO-10303-21;"),
+        ("a.STP", b"ISO-10303-21;"),
+        ("a.stl", b"turnwright, mm, within 0.01 mm"),
+        ("a.glb", b"glTF"),
+        ("a.dxf", b"999\nturnwright: half-section"),
+    ] {
+        assert!(written(name, &[]).starts_with(head), "{name}");
+    }
+    let [coarse, usual, fine] =
+        ["1", "0.01", "0.0001"].map(|chord| written("b.stl", &["--chord", chord]).len());
+    assert!(coarse < usual && usual < fine && usual == written("b.stl", &[]).len());
+    // The same program gives the same bytes.
+    assert_eq!(written("a.step", &[]), written("a.step", &[]));
+    for (name, chord) in [("a.obj", "0.01"), ("a", "0.01"), ("a.stl", "0"), ("a.stl", "10.1"), ("a.stl", "x")]
+    {
+        assert_eq!(turnwright(&["part", &program, "-o", name, "--chord", chord]).status, 2, "{name} {chord}");
+    }
+    assert_eq!(turnwright(&["part", &program]).status, 2);
+}
+
+#[test]
+fn no_part_is_an_error_with_its_reason() {
+    let folder = Folder::new();
+    let program = folder.file("air.nc", "O1\nG0 X50. Z2.\nM30\n");
+    let target = folder.path("a.step");
+    let ran = turnwright(&["part", &program, "-o", &target.display().to_string()]);
+    assert_eq!(ran.status, 1, "{}", ran.err);
+    assert!(ran.err.contains("error[T361]") && !target.exists(), "{}", ran.err);
 }
 
 #[test]
@@ -526,6 +582,7 @@ fn every_command_has_help_with_an_example() {
         "check",
         "trace",
         "plot",
+        "part",
         "measure",
         "diff",
         "explain",

@@ -8,9 +8,11 @@
 //! format shows the commands as they are.
 
 pub mod formats;
+pub mod mesh;
 pub mod part;
 pub mod passes;
 pub mod path;
+pub mod solid;
 pub mod timeline;
 mod words;
 

@@ -4,6 +4,8 @@
 //! counter-clockwise, encloses an area, and neither crosses nor touches itself; or an [`OutlineFault`] that says
 //! where it is not so. An outline is relative to whatever its owner chose: a tool's to its programmed point.
 
+use std::f64::consts::PI;
+
 use crate::track::Track;
 use crate::vector::Vector;
 use crate::{Bend, Point, Segment};
@@ -311,8 +313,25 @@ impl Segment {
         below + bulge
     }
 
+    /// The same of the volume that it passes when it turns round the spindle axis.
+    pub fn volume_round_axis_mm3(&self) -> f64 {
+        let (start, end) = (self.start, self.end);
+        let Some(bend) = self.bend else {
+            return PI / 3.0 * (start.z - end.z) * (start.x * start.x + start.x * end.x + end.x * end.x);
+        };
+        // X is `centre + radius · sin`, Z runs by `−radius · sin`.
+        let (radius, centre) = (self.radius(), bend.centre.x);
+        let from = libm::atan2(start.x - centre, start.z - bend.centre.z);
+        let passed = |angle: f64| {
+            let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
+            let ring = centre * radius * (angle - sine * cosine);
+            ring - centre * centre * cosine + radius * radius * cosine * (cosine * cosine / 3.0 - 1.0)
+        };
+        PI * radius * (passed(from + self.sweep_rad()) - passed(from))
+    }
+
     /// How often a ray from `place` towards higher X crosses the element.
-    fn crossings_above(&self, place: Point) -> usize {
+    pub fn crossings_above(&self, place: Point) -> usize {
         let passes = |from: f64, to: f64| (from <= place.z) != (to <= place.z);
         let Some(bend) = self.bend else {
             let way = (place.z - self.start.z) / (self.end.z - self.start.z);
@@ -384,6 +403,24 @@ mod tests {
             Outline::new(vec![arc(point(5., 4.), point(5., 4.), point(3., 4.), true)]).expect("one arc");
         assert!((whole.area_mm2() - 4.0 * PI).abs() < 1e-12);
         assert!(whole.contains(point(2., 4.)) && !whole.contains(point(2., 6.)));
+    }
+
+    #[test]
+    fn what_turns_round_the_axis_has_the_volume_that_pappus_gives_it() {
+        let volume = |outline: &Outline| -> f64 {
+            outline.segments().iter().map(Segment::volume_round_axis_mm3).sum()
+        };
+        let ring = Outline::circle(point(10., 4.), 2.0).expect("an outline");
+        assert!((volume(&ring) - 2.0 * PI * 10.0 * 4.0 * PI).abs() < 1e-10);
+        let cone = Outline::polygon(&[point(0., 0.), point(6., 0.), point(0., 10.)]).expect("an outline");
+        assert!((volume(&cone) - 120.0 * PI).abs() < 1e-10);
+        // Half a ball on the axis.
+        let half = Outline::new(vec![
+            line(point(0., -3.), point(0., 3.)),
+            arc(point(0., 3.), point(0., -3.), point(0., 0.), false),
+        ])
+        .expect("an outline");
+        assert!((volume(&half) - 36.0 * PI).abs() < 1e-11);
     }
 
     #[test]

@@ -39,6 +39,8 @@ const COMMANDS_PER_LOOK: u64 = 1024;
 #[derive(Clone, Debug)]
 pub struct PartRun {
     machining: Machining,
+    /// The same without its threads, from the first of them on.
+    plain: Option<Box<Machining>>,
     stock: Outline,
     moves: u64,
     commands: u64,
@@ -54,6 +56,8 @@ pub struct PartRun {
 pub struct Part {
     /// The finished part: what was cut off last, else what the chuck still holds.
     pub section: Section,
+    /// The same as drawings show it: with the surfaces that its threads lie in.
+    pub plain: Section,
     /// What it was before.
     pub stock: Outline,
     /// Its threads.
@@ -145,6 +149,7 @@ impl PartRun {
         }
         Ok(Some(Self {
             machining,
+            plain: None,
             stock,
             moves: 0,
             commands: 0,
@@ -168,6 +173,9 @@ impl PartRun {
         if self.is_full {
             return None;
         }
+        if matches!(command.action, Action::Thread { .. }) && self.plain.is_none() {
+            self.plain = Some(Box::new(self.machining.clone()));
+        }
         match command.action {
             Action::Rapid { .. } | Action::Feed { .. } | Action::Thread { .. } => self.moves += 1,
             Action::Tool { tool, .. } => self.notebook.tool = tool,
@@ -179,6 +187,20 @@ impl PartRun {
             history.add(*commands, &removed, machining.section());
             if let Some(piece) = machining.take_fallen() {
                 history.add_fallen(*commands, &piece);
+            }
+        }
+        if let Some(plain) = &mut self.plain {
+            // Where the grooves are not cut, a rapid out of one would cut it.
+            let is_in_thread = |mark: &ThreadMark| {
+                let (from, to) = (mark.bounds.min.z - mark.lead_mm, mark.bounds.max.z + mark.lead_mm);
+                removed.bounds.is_none_or(|bounds| from < bounds.min.z && bounds.max.z < to)
+            };
+            match command.action {
+                Action::Thread { .. } => plain.pass_over(command),
+                Action::Rapid { .. } if machining.threads().iter().any(is_in_thread) => {
+                    plain.pass_over(command);
+                }
+                _ => drop(plain.advance(command, &mut |_| {})),
             }
         }
         self.commands += 1;
@@ -204,6 +226,7 @@ impl PartRun {
         }
         Part {
             section: self.machining.part().clone(),
+            plain: self.plain.as_deref().unwrap_or(&self.machining).part().clone(),
             stock: self.stock,
             threads: self.machining.threads().to_vec(),
             findings: self.notebook.findings,

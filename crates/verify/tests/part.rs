@@ -133,3 +133,20 @@ fn findings_are_bounded() {
     let rapids = told.iter().filter(|one| one.0 == "rapid-into-stock").count();
     assert_eq!(rapids, 10);
 }
+
+#[test]
+fn a_thread_leaves_the_surface_that_it_lies_in() {
+    let given = Setup::parse("[stock]\ndiameter_mm = 40\nlength_mm = 60\n").expect("a setup");
+    let turning = "O1\nT0101 G97 S800 M3\nG0 X30. Z2.\nG1 Z-20. F0.2\nX42.\nG0 X100. Z50.\n";
+    let threading = "T0303\nG0 X34. Z5.\nG92 X29. Z-12. F1.5\nX28.2\nG0 X100. Z50.\n";
+    let control = "fanuc-0i-tf";
+    let threaded = part(&format!("{turning}{threading}M30\n"), control, &given);
+    // In the middle of the spigot: what the rapid takes on its way out of the groove is no part of the drawing.
+    assert_eq!(threaded.threads.len(), 1);
+    assert_eq!(threaded.plain.spans(14.9), [(-60.0, 0.0)]);
+    assert!(threaded.section.spans(14.9).len() > 5);
+    // Without a thread both are one, and it is the same.
+    let plain = part(&format!("{turning}M30\n"), control, &given);
+    assert_eq!(plain.plain.volume_mm3(), plain.section.volume_mm3());
+    assert!((plain.plain.volume_mm3() - threaded.plain.volume_mm3()).abs() < 1e-6);
+}

@@ -8,6 +8,7 @@ mod explain;
 mod generate;
 mod measure;
 mod motion;
+mod part;
 mod passes;
 mod plot;
 mod run;
@@ -26,6 +27,7 @@ pub(crate) fn run(arguments: &Arguments, printer: &Printer) -> Result<Status, Fa
         Command::Check(options) => check::run(options, printer),
         Command::Trace(options) => trace::run(options, printer),
         Command::Plot(options) => plot::run(options, printer),
+        Command::Part(options) => part::run(options, printer),
         Command::Motion(options) => motion::run(options, printer),
         Command::Time(options) => time::run(options, printer),
         Command::Measure(options) => measure::run(options, printer),
@@ -46,6 +48,7 @@ pub(crate) fn format(arguments: &Arguments) -> Format {
         Command::Run(options) => options.format,
         Command::Check(options) => options.format,
         Command::Plot(options) => options.format,
+        Command::Part(options) => options.format,
         Command::Setup(options) => options.format,
         Command::Measure(options) => lookup(options.format),
         Command::Diff(options) => lookup(options.format),

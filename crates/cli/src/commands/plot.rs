@@ -1,9 +1,10 @@
-//! `turnwright plot`: the picture of the tool path alone.
+//! `turnwright plot`: the tool path alone, as a picture or as the lines and arcs of a DXF file.
 
 use std::io::{self, Write};
 use std::path::Path;
 
 use turnwright_diagnostics::Diagnostic;
+use turnwright_export::formats::dxf::write_path_dxf;
 use turnwright_export::formats::png::write_png;
 use turnwright_export::formats::svg::{PictureOptions, write_svg};
 
@@ -12,7 +13,7 @@ use crate::environment::ProgramText;
 use crate::execution::Execution;
 use crate::fault::{Fault, Status};
 use crate::finding::Finding;
-use crate::output::{WholeFile, sarif};
+use crate::output::{PartFile, WholeFile, sarif};
 use crate::rates::rates;
 use crate::render::Printer;
 use crate::report::{Kept, Measure, picture_language};
@@ -38,6 +39,10 @@ pub(crate) fn run(options: &Plot, printer: &Printer) -> Result<Status, Fault> {
     }
     measure.finish();
     let Some(path) = measure.path else { return Ok(Status::Failed) };
+    if PartFile::of(&options.output) == Some(PartFile::Dxf) {
+        WholeFile::write(&options.output, write_path_dxf(&path).as_bytes(), speech)?;
+        return say(&execution.findings(), &text, options.format, printer);
+    }
     let title = options.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let language = picture_language(speech.language);
     let picture = write_svg(&path, &PictureOptions { title, language, ..PictureOptions::default() });
@@ -45,7 +50,12 @@ pub(crate) fn run(options: &Plot, printer: &Printer) -> Result<Status, Fault> {
     say(&execution.findings(), &text, options.format, printer)
 }
 
-fn say(findings: &[Finding], text: &ProgramText, format: Format, printer: &Printer) -> Result<Status, Fault> {
+pub(super) fn say(
+    findings: &[Finding],
+    text: &ProgramText,
+    format: Format,
+    printer: &Printer,
+) -> Result<Status, Fault> {
     let speech = printer.speech;
     let mut out = io::stdout().lock();
     match format {

@@ -7,11 +7,15 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use turnwright_diagnostics::{Diagnostic, Severity};
 use turnwright_export::formats::cutting_svg::write_cutting_svg;
+use turnwright_export::formats::dxf::write_path_dxf;
 use turnwright_export::formats::jsonl;
-use turnwright_export::formats::part_svg::{PartDrawing, write_part_svg};
+use turnwright_export::formats::part_svg::PartDrawing;
 use turnwright_export::formats::svg::{PictureOptions, write_svg};
 use turnwright_export::formats::time_svg::{TimePicture, write_time_svg};
+use turnwright_export::mesh::CHORD_MM;
+use turnwright_export::solid::has_solid;
 use turnwright_verify::Checks;
 use turnwright_verify::advice::Advisor;
 use turnwright_verify::cutting::CuttingRun;
@@ -23,7 +27,7 @@ use crate::environment::ProgramText;
 use crate::execution::Execution;
 use crate::fault::{Fault, Status, unwritable};
 use crate::finding::Finding;
-use crate::output::{WholeFile, sarif};
+use crate::output::{PartFile, WholeFile, sarif};
 use crate::part;
 use crate::passes::Passes;
 use crate::progress::Progress;
@@ -32,6 +36,9 @@ use crate::render::Printer;
 use crate::report::{Kept, Measure, RunReport, picture_language};
 use crate::session::Session;
 use crate::speech::Speech;
+
+/// What `--out` writes of the part.
+const PART_FILES: [&str; 5] = ["part.svg", "part.step", "part.stl", "part.glb", "part.dxf"];
 
 /// Runs the program and reports.
 pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
@@ -86,6 +93,10 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     }
     let judged = part::judged(part.as_ref(), &session.setup, execution.alarm());
     part::out_of_tolerance(&judged).for_each(|finding| execution.warn(finding));
+    let part = part.and_then(part::drawn);
+    if options.out.is_some() && part.as_ref().is_some_and(|(_, shape)| !has_solid(shape)) {
+        execution.warn(Diagnostic::new(Severity::Note, "part-too-fine"));
+    }
     let findings = execution.findings();
     let status = findings.iter().map(Finding::status).max().unwrap_or(Status::Clean);
     let blocks = execution.interpreter().blocks_run();
@@ -101,7 +112,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         passes: passes.map(Passes::finish).unwrap_or_default(),
         decimals,
         assumptions: checked.inferred.assumptions,
-        part: part.and_then(part::drawn),
+        part,
         cutting,
         judged,
         blocks,
@@ -195,12 +206,14 @@ impl OutFolder {
             ..PictureOptions::default()
         };
         let picture = write_svg(&path, &options);
+        let strokes = write_path_dxf(&path);
         drop(path);
         let png = paint(&folder.join("path.png"), &picture)?;
         WholeFile::write(&folder.join("report.html"), page.as_bytes(), printer.speech)?;
         WholeFile::write(&folder.join("path.svg"), picture.as_bytes(), printer.speech)?;
         WholeFile::write(&folder.join("path.png"), &png, printer.speech)?;
-        let mut names = vec!["report.html", "path.svg", "path.png", "trace.jsonl", "times.csv"];
+        WholeFile::write(&folder.join("path.dxf"), strokes.as_bytes(), printer.speech)?;
+        let mut names = vec!["report.html", "path.svg", "path.png", "path.dxf", "trace.jsonl", "times.csv"];
         if let Some(timeline) = &report.measure.timeline {
             let picture = TimePicture { title: report.title(), language: picture_language(language) };
             let drawn = write_time_svg(timeline, &picture);
@@ -219,8 +232,13 @@ impl OutFolder {
                 title: report.title(),
                 language: picture_language(language),
             };
-            WholeFile::write(&folder.join("part.svg"), write_part_svg(&drawing).as_bytes(), printer.speech)?;
-            names.push("part.svg");
+            for name in PART_FILES {
+                let target = folder.join(name);
+                if let Some(bytes) = PartFile::of(&target).and_then(|form| form.bytes(&drawing, CHORD_MM)) {
+                    WholeFile::write(&target, &bytes, printer.speech)?;
+                    names.push(name);
+                }
+            }
         }
         trace.finish()?;
         times.finish()?;

@@ -190,6 +190,12 @@ impl Machining {
         }
     }
 
+    /// Follows a command without cutting or telling anything.
+    pub fn pass_over(&mut self, command: &Command) {
+        self.at = self.place.end_of(&command.action).unwrap_or(self.at);
+        self.remember(&command.action);
+    }
+
     /// What is no move, but changes what moves do.
     fn remember(&mut self, action: &Action) {
         match action {

@@ -196,7 +196,7 @@ mod tests {
         let ball = Outline::circle(Point::new(20.0, -30.0), 5.0).expect("a circle");
         let removed = section.cut_hole(&ball);
         history.add(7, &removed, &section);
-        let shape = PartShape::new(&section, &[]).expect("a part");
+        let shape = PartShape::new(&section, &section, &[]).expect("a part");
         let tools = BTreeMap::from([(3, ToolShape { cutting: ball.clone(), body: None })]);
         let obstacles = [(Obstacle::Jaws, stock.clone())];
         let part = ReportPart {
