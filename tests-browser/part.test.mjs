@@ -208,6 +208,18 @@ test("a crash is marked in the picture, and its mark leads to the finding", asyn
   assert.equal(await page.evaluate(() => turnwright.currentLine), 20, "a click on the mark goes there too");
 });
 
+test("a rapid into the stock takes it away as it goes", async () => {
+  await open(drawn);
+  const areas = await page.evaluate(() => {
+    const move = turnwright.linesOfMoves().indexOf(20);
+    return [0, 0.25, 0.5, 0.75, 0.999999].map((share) => { turnwright.goTo(move, share); return turnwright.sectionArea; })
+      .concat([(turnwright.goTo(move + 1), turnwright.sectionArea)]);
+  });
+  for (let n = 1; n < areas.length; n++) assert.ok(areas[n] <= areas[n - 1] + 1e-9, `${areas}`);
+  assert.ok(areas[0] - areas[5] > 5, "it crashes");
+  assert.ok(areas[4] - areas[5] < 0.2, `nothing jumps at the end: ${areas}`);
+});
+
 test("the piece that is cut off stays in the picture, and is no material any more", async () => {
   await open(drawn);
   await page.keyboard.press("End");

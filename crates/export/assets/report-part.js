@@ -222,7 +222,9 @@ const partModel = (part, path, geometry) => {
       return;
     }
     const tool = toolOf(move);
-    if (path.kind[move] !== 1 || !tool?.convex) return;
+    // A rapid takes something only where it crashes.
+    const cuts = path.kind[move] === 1 || moments[momentsUpTo(move)]?.step === move + 1;
+    if (!cuts || !tool?.convex) return;
     let left = share * geometry.moveLength(move);
     for (let i = path.first[move]; i < geometry.segmentEnd(move) && left >= 0; i++) {
       const length = geometry.lengthOf(i), part = length > 0 ? Math.min(1, left / length) : 1;
