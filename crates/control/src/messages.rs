@@ -63,10 +63,6 @@ pub enum RaisedBy {
     Option,
     /// A function that is refused by name.
     OutsideScope,
-    /// Comes with nose compensation.
-    NoseCompensation,
-    /// Comes with the hole cycles and the further cycles of GSK.
-    Cycles,
     /// Comes with the checks of a whole program.
     Checks,
 }

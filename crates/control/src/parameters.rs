@@ -62,8 +62,8 @@ pub enum Acts {
     Live,
     /// The machine file says it.
     MachineFile,
-    /// Once the hole cycles and the further words of the multiple cycles are executed.
-    Cycles,
+    /// What it does exactly, no text at hand tells; whoever sets it is told so.
+    Untold,
 }
 
 /// A parameter as `data/parameters.toml` has it.
@@ -219,6 +219,17 @@ impl Parameters {
     /// Whether somebody set it, to whatever value.
     pub fn is_stated(&self, name: &str) -> bool {
         self.stated.contains(name)
+    }
+
+    /// The numbers of parameters that were set away from their defaults although nobody knows what they do
+    /// ([`Acts::Untold`]).
+    pub fn stated_untold(&self) -> impl Iterator<Item = &'static str> {
+        let untold = TABLE.iter().zip(&self.values).filter(|((name, parameter), values)| {
+            parameter.acts == Some(Acts::Untold)
+                && self.stated.contains(name)
+                && values.iter().any(|value| *value != parameter.default)
+        });
+        untold.filter_map(|((name, _), _)| self.number(name))
     }
 
     /// The number by which a parameter was set for an axis, if one was: `1221.C`.

@@ -297,6 +297,9 @@ impl Interpreter {
             in_force: InForce::new(dispatch.codes_at_power_on),
         };
         let parts = Parts::new(&control.parameters);
+        let untold = control.parameters.stated_untold();
+        let warnings =
+            untold.map(|number| Diagnostic::warning("parameter-untold").with("parameter", number)).collect();
         let start = Cursor { source, offset: 0, line: 1 };
         let mut core = Core {
             control,
@@ -364,7 +367,7 @@ impl Interpreter {
             expects_program_number: true,
             is_over: false,
             sync: None,
-            warnings: Vec::new(),
+            warnings,
             warnings_given: 0,
             said: HashSet::new(),
             machine_limits,
