@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use crate::board::Board;
 use crate::generate;
 
 /// What one run took.
@@ -13,27 +14,32 @@ pub struct Cost {
 }
 
 /// Generates, runs, prints.
-pub fn run(blocks: u64, rounds: usize) -> Result<(), String> {
+pub fn run(blocks: u64, rounds: usize, board: &mut Board) -> Result<(), String> {
     let folder = std::env::temp_dir().join("turnwright-bench");
-    if !folder.join(format!("done-2-{blocks}")).exists() {
+    // The programs of an earlier run serve again when they have the same size.
+    let (note, size) = (folder.join("generated"), format!("3 {blocks}"));
+    if std::fs::read_to_string(&note).is_ok_and(|noted| noted == size) {
+        println!("the programs are those of an earlier run");
+    } else {
         generate::all(&folder, blocks)?;
-        std::fs::write(folder.join(format!("done-2-{blocks}")), "").map_err(|error| error.to_string())?;
+        std::fs::write(&note, size).map_err(|error| error.to_string())?;
     }
     let peer = Peer::find(&folder);
     if peer.is_none() {
         println!("rs274 is not installed (Debian: linuxcnc-uspace): own figures only");
     }
-    reading(&folder, rounds)?;
+    reading(&folder, rounds, board)?;
+    start(&folder, peer.as_ref(), board)?;
     let rows = [
-        ("P1 G1 X Z", "lines", "interpret", true, 1),
-        ("P3 N G1 X Z F", "numbered", "interpret", true, 1),
-        ("P4 arcs I K", "arcs-centre", "interpret", true, 1),
-        ("P4 arcs R", "arcs-radius", "interpret", true, 1),
-        ("P5 loop", "loop", "interpret", true, 1),
-        ("P6 loop of moves", "loop-moves", "interpret", true, 1),
-        ("S3 jumps", "jumps", "interpret", true, 1),
-        ("P8 trace of G1", "lines", "listing", false, 1),
-        ("S1 five times", "lines5", "interpret", true, 5),
+        ("P1", "lines", "interpret", true, 1),
+        ("P3", "numbered", "interpret", true, 1),
+        ("P4", "arcs-centre", "interpret", true, 1),
+        ("P4 R", "arcs-radius", "interpret", true, 1),
+        ("P5", "loop", "interpret", true, 1),
+        ("P6", "loop-moves", "interpret", true, 1),
+        ("S3", "jumps", "interpret", true, 1),
+        ("P8", "lines", "listing", false, 1),
+        ("S1", "lines5", "interpret", true, 5),
     ];
     let mut once = 0.0;
     for (label, name, step, silent, times) in rows {
@@ -51,13 +57,14 @@ pub fn run(blocks: u64, rounds: usize) -> Result<(), String> {
         let mine = median(&ours);
         let count = (blocks * times) as f64;
         print!(
-            "{label:16} {:8.3} s  {:6.1} M blocks/s  {:6.1} MiB",
+            "{label:5} {name:11} {:8.3} s  {:6.1} M blocks/s  {:6.1} MiB",
             mine.cpu_s,
             count / mine.cpu_s / 1e6,
             mine.memory_mib
         );
         if !theirs.is_empty() {
             let peer = median(&theirs);
+            board.note(label, peer.cpu_s / mine.cpu_s);
             print!(
                 "   rs274 {:7.3} s  {:6.1} MiB   ratio {:.1}",
                 peer.cpu_s,
@@ -68,26 +75,29 @@ pub fn run(blocks: u64, rounds: usize) -> Result<(), String> {
         if name == "loop"
             && let Some(lua) = lua(blocks, rounds)
         {
+            board.note("P5 Lua", lua.cpu_s / mine.cpu_s);
             print!("   Lua {:.3} s  ratio {:.2}", lua.cpu_s, lua.cpu_s / mine.cpu_s);
         }
         println!();
         match (name, step) {
             ("lines", "interpret") => once = mine.cpu_s,
-            ("lines5", _) => println!(
-                "S2 growth        {:8.2} (five times the blocks, time per block)",
-                mine.cpu_s / 5.0 / once
-            ),
+            ("jumps", _) => board.note("S3", mine.cpu_s * 1e6 / blocks as f64),
+            ("lines5", _) => {
+                board.note("S1 memory", mine.memory_mib);
+                board.note("S2", mine.cpu_s / 5.0 / once);
+                println!("S2 growth {:8.2} (five times the blocks, time per block)", mine.cpu_s / 5.0 / once);
+            }
             _ => {}
         }
     }
-    crate::cycles::run(&folder, peer.as_ref(), rounds)
+    crate::cycles::run(&folder, peer.as_ref(), rounds, board)
 }
 
 /// The cycles alone.
-pub fn cycles(rounds: usize) -> Result<(), String> {
+pub fn cycles(rounds: usize, board: &mut Board) -> Result<(), String> {
     let folder = std::env::temp_dir().join("turnwright-bench");
     std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
-    crate::cycles::run(&folder, Peer::find(&folder).as_ref(), rounds)
+    crate::cycles::run(&folder, Peer::find(&folder).as_ref(), rounds, board)
 }
 
 /// The loop of P5 in Lua 5.4 with its variables in a table, when that is installed.
@@ -110,13 +120,50 @@ fn lua(loops: u64, rounds: usize) -> Option<Cost> {
     costs.ok().map(|costs| median(&costs))
 }
 
-fn reading(folder: &Path, rounds: usize) -> Result<(), String> {
+/// A program of nothing but its end: the command line beside the other side, both a few times in a run.
+fn start(folder: &Path, peer: Option<&Peer>, board: &mut Board) -> Result<(), String> {
+    const TIMES: usize = 20;
+    let beside = std::env::current_exe().map_err(|error| error.to_string())?.with_file_name("turnwright");
+    if !beside.exists() {
+        println!("X1: build the command line first (cargo build --release)");
+        return Ok(());
+    }
+    let (nc, ngc) = (folder.join("end.nc"), folder.join("end.ngc"));
+    for (path, text) in [(&nc, "O1\nM30\n"), (&ngc, "M2\n")] {
+        std::fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()))?;
+    }
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    for _ in 0..TIMES {
+        let mut command = Command::new(&beside);
+        command.args(["check", "--alarms-only"]).arg(&nc);
+        ours.push(measure(command)?);
+        if let Some(peer) = peer {
+            theirs.push(peer.run(&ngc, true)?);
+        }
+    }
+    let mine = median(&ours).cpu_s;
+    println!("X1 start-up {:.2} ms", mine * 1e3);
+    if !theirs.is_empty() {
+        board.note("X1", median(&theirs).cpu_s / mine);
+    }
+    Ok(())
+}
+
+fn reading(folder: &Path, rounds: usize, board: &mut Board) -> Result<(), String> {
     let path = folder.join("lines.nc");
     let bytes = std::fs::metadata(&path).map_err(|error| error.to_string())?.len() as f64;
     for (label, step) in [("P9 words", "lex"), ("P10 tree", "tree")] {
         let costs: Result<Vec<_>, _> = (0..rounds).map(|_| own(step, &path)).collect();
         let cost = median(&costs?);
         let share = (cost.memory_mib * 1_048_576.0) / bytes;
+        match step {
+            "tree" => board.note("P10", share),
+            _ if cfg!(feature = "peers") => {
+                let costs: Result<Vec<_>, _> = (0..rounds).map(|_| own("gcode", &path)).collect();
+                board.note("P9", median(&costs?).cpu_s / cost.cpu_s);
+            }
+            _ => {}
+        }
         println!(
             "{label:16} {:8.3} s  {:6.0} MB/s  {share:5.2} x the source in memory",
             cost.cpu_s,

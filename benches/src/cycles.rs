@@ -8,6 +8,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
+use crate::board::Board;
 use crate::compare::{Cost, Peer, median, own};
 use crate::interpret;
 
@@ -21,7 +22,7 @@ struct Pair {
 }
 
 /// Writes the programs into `folder`, runs them, prints.
-pub fn run(folder: &Path, peer: Option<&Peer>, rounds: usize) -> Result<(), String> {
+pub fn run(folder: &Path, peer: Option<&Peer>, rounds: usize, board: &mut Board) -> Result<(), String> {
     for pair in [roughing(), threading()] {
         let (nc, ngc) = (folder.join(format!("{}.nc", pair.name)), folder.join(format!("{}.ngc", pair.name)));
         write(&nc, &pair.nc)?;
@@ -37,6 +38,7 @@ pub fn run(folder: &Path, peer: Option<&Peer>, rounds: usize) -> Result<(), Stri
         print!("P7 {:12} {:6.2} M moves/s", pair.name, mine / 1e6);
         if let Some(peer) = peer {
             let other = peer.moves(&ngc)? as f64 / median(&theirs).cpu_s;
+            board.note(if pair.name == "G71" { "P7 G71" } else { "P7 G76" }, mine / other);
             print!("   rs274 {:6.2} M moves/s   ratio {:.1}", other / 1e6, mine / other);
         }
         println!();
@@ -51,6 +53,7 @@ pub fn run(folder: &Path, peer: Option<&Peer>, rounds: usize) -> Result<(), Stri
         times.push(start.elapsed().as_secs_f64() * 1e3);
     }
     times.sort_by(f64::total_cmp);
+    board.note("pockets", times[times.len() / 2]);
     println!(
         "type II, 1000 elements, 100 pockets: {:.1} ms, {moves} moves (goal 50 ms)",
         times[times.len() / 2]

@@ -4,11 +4,13 @@
 //! ratios (goals: P1 G1 blocks, P3 numbered blocks, P4 arcs, P5 and P6 macro loops, P7 cycles, P8 listing,
 //! S1 memory, S2 growth, S3 jumps). `rs274` is run
 //! as a separate program when it is installed; without it only our own figures are printed.
+//! `table [BLOCKS]` does all of this and writes `docs/performance.md`: every goal beside what was measured.
 //! `removal` takes material away beside a polyline library (R1, R3, R4).
 //! `motion [TICKS]` plans paths and plays programs beside `rsruckig` (T1 to T5).
 //! `work NAME COUNT` is what `cargo xtask guard` counts the instructions of.
 //! `cycles` runs P7 and a figure of 100 pockets alone; `generate DIR [BLOCKS]`, `lex FILE`, `tree FILE`, `interpret FILE`, `listing FILE` do single steps.
 
+mod board;
 mod compare;
 mod cycles;
 mod generate;
@@ -16,6 +18,8 @@ mod generate;
 mod motion;
 #[cfg(feature = "peers")]
 mod removal;
+#[cfg(feature = "peers")]
+mod words;
 mod work;
 
 use std::fs::File;
@@ -23,6 +27,7 @@ use std::os::unix::fs::FileExt;
 use std::path::Path;
 use std::process::ExitCode;
 
+use board::Board;
 use turnwright_canon::{Action, Shape};
 use turnwright_control::{Control, Setup};
 use turnwright_diagnostics::SourceId;
@@ -45,21 +50,27 @@ fn main() -> ExitCode {
         ["tree", file] => tree(Path::new(file)),
         ["interpret", file] => interpret(Path::new(file)).map(drop),
         ["listing", file] => listing(Path::new(file)),
-        ["cycles"] => compare::cycles(3),
+        ["cycles"] => compare::cycles(3, &mut Board::default()),
         ["work", name, count] => match count.parse() {
             Ok(count) => work::run(name, count),
             Err(_) => Err(format!("{count} is no number")),
         },
         #[cfg(feature = "peers")]
-        ["removal"] => removal::run(1_000, 10).and_then(|()| removal::growth(10_000, 10)),
+        ["removal"] => removal::run(1_000, 10, &mut Board::default()).and_then(|()| removal::growth(10_000, 10, &mut Board::default())),
         #[cfg(feature = "peers")]
-        ["motion"] => motion::run(10_000_000),
+        ["motion"] => motion::run(10_000_000, &mut Board::default()),
         #[cfg(feature = "peers")]
-        ["motion", ticks] => motion::run(ticks.parse().unwrap_or(10_000_000)),
-        ["compare"] => compare::run(1_000_000, 5),
-        ["compare", blocks] => compare::run(blocks.parse().unwrap_or(1_000_000), 5),
+        ["motion", ticks] => motion::run(ticks.parse().unwrap_or(10_000_000), &mut Board::default()),
+        ["compare"] => compare::run(1_000_000, 5, &mut Board::default()),
+        ["compare", blocks] => compare::run(blocks.parse().unwrap_or(1_000_000), 5, &mut Board::default()),
+        #[cfg(feature = "peers")]
+        ["table"] => table(1_000_000),
+        #[cfg(feature = "peers")]
+        ["table", blocks] => table(blocks.parse().unwrap_or(1_000_000)),
+        #[cfg(feature = "peers")]
+        ["gcode", file] => words::read(Path::new(file)),
         _ => {
-            Err("usage: compare [BLOCKS] | cycles | removal | motion [TICKS] | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE"
+            Err("usage: table [BLOCKS] | compare [BLOCKS] | cycles | removal | motion [TICKS] | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE"
                 .to_string())
         }
     };
@@ -71,6 +82,17 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Measures everything and writes the table of goals.
+#[cfg(feature = "peers")]
+fn table(blocks: u64) -> Result<(), String> {
+    let mut board = Board::default();
+    compare::run(blocks, 5, &mut board)?;
+    removal::run(1_000, 10, &mut board)?;
+    removal::growth(10_000, 10, &mut board)?;
+    motion::run(10 * blocks, &mut board)?;
+    board.write(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/performance.md"), blocks)
 }
 
 struct Texts(File);

@@ -11,6 +11,8 @@ use turnwright_motion::planner::{Pace, RunLimits};
 use turnwright_motion::{Dynamics, MachineRates, Player, Sample, Schedule};
 use turnwright_units::{Feed, FeedPerMinute, Length, Position, Radius, WorkTip};
 
+use crate::board::Board;
+
 /// xorshift64*, seeded.
 struct Random(u64);
 
@@ -56,15 +58,15 @@ impl Stopwatch {
 }
 
 /// Prints the table; `samples` ticks are looked at for limits.
-pub fn run(samples: u64) -> Result<(), String> {
-    segments()?;
-    legs();
-    ticks();
-    programs(samples)
+pub fn run(samples: u64, board: &mut Board) -> Result<(), String> {
+    segments(board)?;
+    legs(board);
+    ticks(board);
+    programs(samples, board)
 }
 
 /// T1: rest to rest on a straight line, ours and the optimum.
-fn segments() -> Result<(), String> {
+fn segments(board: &mut Board) -> Result<(), String> {
     const COUNT: usize = 400_000;
     let limits = RunLimits { acceleration_mm_per_s2: 3000.0, jerk_mm_per_s3: 150_000.0 };
     for (name, shortest, longest) in
@@ -98,6 +100,12 @@ fn segments() -> Result<(), String> {
             optimum_s += trajectory.get_duration();
         }
         let theirs_ns = started.nanoseconds_each(COUNT);
+        if shortest == 5.0 {
+            board.note("T1", theirs_ns / ours_ns);
+            board.note("T1 time", ours_s / optimum_s);
+        } else if longest == 0.5 {
+            board.note("T1 short", theirs_ns / ours_ns);
+        }
         println!(
             "T1 rest to rest, {name:15} {ours_ns:7.0} ns, rsruckig {theirs_ns:6.0} ns: ratio {:5.1}; machine time {:.3} x the optimum",
             theirs_ns / ours_ns,
@@ -131,7 +139,7 @@ fn wave(count: usize, mm: f64, mm_per_min: f64) -> Vec<Command> {
 }
 
 /// T2: what a leg costs until its time is known, corners and look-ahead included.
-fn legs() {
+fn legs(board: &mut Board) {
     const COUNT: usize = 400_000;
     for mm_per_min in [200.0, 3000.0] {
         let commands = wave(COUNT, 0.13, mm_per_min);
@@ -149,6 +157,7 @@ fn legs() {
             seconds += timing.seconds;
         }
         let ns = started.nanoseconds_each(COUNT);
+        board.note("T2", ns);
         println!(
             "T2 legs of 0.13 mm at F{mm_per_min:<5} {ns:7.0} ns a leg, look-ahead 2048; {seconds:.0} s of machine time"
         );
@@ -156,7 +165,7 @@ fn legs() {
 }
 
 /// T3: a tick of the path, and the longest ones.
-fn ticks() {
+fn ticks(board: &mut Board) {
     let limits = Dynamics::default();
     let along = RunLimits {
         acceleration_mm_per_s2: limits.axes[0].acceleration_per_s2 / 4.0,
@@ -185,6 +194,8 @@ fn ticks() {
     nanoseconds.sort_unstable();
     let of = |part: f64| nanoseconds[((nanoseconds.len() - 1) as f64 * part) as usize];
     let mean = nanoseconds.iter().map(|ns| u64::from(*ns)).sum::<u64>() as f64 / nanoseconds.len() as f64;
+    board.note("T3", mean);
+    board.note("T3 p99.9", f64::from(of(0.999)));
     println!(
         "T3 a tick of the path: mean {mean:.0} ns, p99 {} ns, p99.9 {} ns ({} ticks, the clock's own cost included)",
         of(0.99),
@@ -214,7 +225,7 @@ fn program(seed: u64, size: f64) -> Vec<Command> {
 }
 
 /// T4 and T5: programs played at a thousand ticks a second, each axis looked at.
-fn programs(samples: u64) -> Result<(), String> {
+fn programs(samples: u64, board: &mut Board) -> Result<(), String> {
     let dynamics = Dynamics::default();
     let (mut ticks, mut violations, mut seed) = (0u64, 0u64, 0u64);
     let (mut machine_s, mut cpu_s) = (0.0, 0.0);
@@ -244,6 +255,8 @@ fn programs(samples: u64) -> Result<(), String> {
         }
         seed += 1;
     }
+    board.note("T4", violations as f64);
+    board.note("T5", machine_s / cpu_s);
     println!("T4 limits of acceleration and jerk passed: {violations} in {ticks} ticks of {seed} programs");
     println!("T5 played {:.0} x as fast as the machine runs, at 1000 ticks a second", machine_s / cpu_s);
     if violations == 0 { Ok(()) } else { Err(format!("{violations} samples beyond a limit")) }

@@ -11,6 +11,8 @@ use cavalier_contours::polyline::{BooleanOp, PlineSource, PlineSourceMut, Polyli
 use turnwright_geometry::{Bend, Outline, Point, Segment};
 use turnwright_stock::{Cutter, Section, Sweep};
 
+use crate::board::Board;
+
 const RADIUS_MM: f64 = 50.0;
 const STEP_MM: f64 = 0.1;
 const NOSE_MM: f64 = 0.4;
@@ -18,7 +20,7 @@ const HEIGHT_MM: f64 = 60.0;
 const DEPTH_MM: f64 = 2.0;
 
 /// Times both, and prints ways a second and what the areas differ by.
-pub fn run(ways: usize, passes: usize) -> Result<(), String> {
+pub fn run(ways: usize, passes: usize, board: &mut Board) -> Result<(), String> {
     println!("{passes} passes of {ways} ways each");
     let (insert_per_s, _) = ours(&insert()?, ways, passes, STEP_MM)?;
     println!("an insert with edges of 12 mm: {insert_per_s:.0} ways/s");
@@ -35,11 +37,24 @@ pub fn run(ways: usize, passes: usize) -> Result<(), String> {
         "R1 {:.1} times as fast (floor 20, goal 50); R4 areas differ by {off:.1e} (goal 1e-9)",
         per_s / their_per_s
     );
+    board.note("R1", per_s / their_per_s);
+    board.note("R4", off);
+    for (goal, name, of_peer) in [
+        ("R2 geo", "geo", with_geo as fn(usize, usize) -> f64),
+        ("R2 i_overlay", "i_overlay", with_i_overlay),
+    ] {
+        let peer_per_s = of_peer(ways, passes);
+        println!(
+            "{name}, chords: {peer_per_s:.0} ways/s: {:.0} times as fast (goal 150)",
+            per_s / peer_per_s
+        );
+        board.note(goal, per_s / peer_per_s);
+    }
     Ok(())
 }
 
 /// How much slower a way is in a section of many edges than in one of few (R3).
-pub fn growth(ways: usize, passes: usize) -> Result<(), String> {
+pub fn growth(ways: usize, passes: usize, board: &mut Board) -> Result<(), String> {
     let finger = finger()?;
     let (few, _) = ours(&finger, ways / 100, passes, STEP_MM)?;
     let (many, section) = ours(&finger, ways, passes, STEP_MM)?;
@@ -51,6 +66,7 @@ pub fn growth(ways: usize, passes: usize) -> Result<(), String> {
         section.slab_count(),
         many / few
     );
+    board.note("R3", many / few);
     println!("as many ten times as close together: {fine:.0} ways/s");
     Ok(())
 }
@@ -159,6 +175,69 @@ fn theirs(ways: usize, passes: usize) -> Result<(f64, f64), String> {
         }
     }
     Ok(((passes * ways) as f64 / (busy_s() - begin), bar.area().abs()))
+}
+
+/// What the finger passes over, its round end in eight chords on each side: places of Z and X.
+fn chorded_finger(left: Point, right: Point) -> Vec<[f64; 2]> {
+    let shape = swept_finger(left, right);
+    let mut places = Vec::new();
+    for (one, next) in shape.iter_vertexes().zip(shape.iter_vertexes().cycle().skip(1)) {
+        places.push([one.x, one.y]);
+        if one.bulge != 0.0 {
+            // From the angle of the arc to places on it: the nose's centre is one of the ends of the way.
+            let angle = 4.0 * one.bulge.atan();
+            let (dx, dy) = (next.x - one.x, next.y - one.y);
+            let radius = dx.hypot(dy) / 2.0 / (angle / 2.0).sin().abs();
+            let half = radius * (angle / 2.0).cos();
+            let (mx, my) = (f64::midpoint(one.x, next.x), f64::midpoint(one.y, next.y));
+            let side = angle.signum() / dx.hypot(dy);
+            let centre = [mx - dy * half * side, my + dx * half * side];
+            let start = (one.y - centre[1]).atan2(one.x - centre[0]);
+            for chord in 1..8 {
+                let at = start + angle * f64::from(chord) / 8.0;
+                places.push([centre[0] + radius * at.cos(), centre[1] + radius * at.sin()]);
+            }
+        }
+    }
+    places
+}
+
+/// Ways a second of a peer whose section is given and taken.
+fn timed<T>(ways: usize, passes: usize, bar: T, mut cut: impl FnMut(T, &[[f64; 2]]) -> T) -> f64 {
+    let begin = busy_s();
+    let mut bar = bar;
+    for pass in 0..passes {
+        let places: Vec<Point> = places(ways, pass, STEP_MM).collect();
+        for pair in places.windows(2) {
+            bar = cut(bar, &chorded_finger(pair[1], pair[0]));
+        }
+    }
+    std::hint::black_box(bar);
+    (passes * ways) as f64 / (busy_s() - begin)
+}
+
+fn corners(ways: usize) -> [[f64; 2]; 4] {
+    let length_mm = STEP_MM * ways as f64;
+    [[-length_mm, 0.0], [0.0, 0.0], [0.0, RADIUS_MM], [-length_mm, RADIUS_MM]]
+}
+
+fn with_geo(ways: usize, passes: usize) -> f64 {
+    use geo::{BooleanOps, LineString, MultiPolygon, Polygon};
+    let polygon = |places: &[[f64; 2]]| {
+        Polygon::new(LineString::from(places.iter().map(|[z, x]| (*z, *x)).collect::<Vec<_>>()), Vec::new())
+    };
+    let bar = MultiPolygon::new(vec![polygon(&corners(ways))]);
+    timed(ways, passes, bar, |bar, swept| bar.difference(&polygon(swept)))
+}
+
+fn with_i_overlay(ways: usize, passes: usize) -> f64 {
+    use i_overlay::core::fill_rule::FillRule;
+    use i_overlay::core::overlay_rule::OverlayRule;
+    use i_overlay::float::single::SingleFloatOverlay;
+    let bar = vec![vec![corners(ways).to_vec()]];
+    timed(ways, passes, bar, |bar, swept| {
+        bar.overlay(&swept.to_vec(), OverlayRule::Difference, FillRule::EvenOdd)
+    })
 }
 
 /// What the finger passes over between two places, from left to right.
