@@ -63,8 +63,6 @@ pub enum RaisedBy {
     Option,
     /// A function that is refused by name.
     OutsideScope,
-    /// Comes with the checks of a whole program.
-    Checks,
 }
 
 impl RaisedBy {

@@ -15,6 +15,8 @@ pub mod cutting;
 mod inference;
 pub mod measuring;
 pub mod part;
+mod text;
 
 pub use checks::{Checked, Checks};
 pub use inference::{Assumption, Inference, Inferred};
+pub use text::TextChecks;

@@ -42,7 +42,8 @@ fn told(setup: &str, program: &str) -> String {
     let run = run(program, "fanuc-0i-tf", &setup);
     let mut checks = Checks::new(run.start);
     run.commands.iter().for_each(|command| checks.add(command));
-    let mut findings = checks.finish(&setup).findings;
+    let mut findings = run.text;
+    findings.extend(checks.finish(&setup).findings);
     findings.retain(|finding| !setup.checks.allow.iter().any(|name| name == finding.key));
     findings.sort_by_key(|finding| (finding.place.map_or(0, |place| place.line), finding.key));
     let line = |finding: &turnwright_diagnostics::Diagnostic| {
@@ -69,7 +70,8 @@ fn every_check_tells_what_it_should_and_nothing_else() {
     }
     assert!(failures.is_empty(), "{} of {count} fixtures differ:\n{}", failures.len(), failures.join("\n"));
     // Every check is a file, and every file is shown.
-    let checks = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/checks");
-    let files = std::fs::read_dir(checks).expect("checks").count() - 1;
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let count = |folder: &str| std::fs::read_dir(source.join(folder)).expect("checks").count() - 1;
+    let files = count("checks") + count("text");
     assert!(keys.len() >= files, "{files} checks, but only {keys:?} are shown");
 }

@@ -102,7 +102,7 @@ fn without_point(text: &str, address: char, behind: &str) -> Option<String> {
     Some(changed)
 }
 
-const SLIPS: [Slip; 33] = [
+const SLIPS: [Slip; 37] = [
     ("X loses its decimal point", |text| without_point(text, 'X', "G00 ")),
     ("Z loses its decimal point", |text| without_point(text, 'Z', "G01 ")),
     ("the point of F moves: F0.1 becomes F10.", |text| replaced(text, "F0.1\n", "F10.\n")),
@@ -150,6 +150,14 @@ const SLIPS: [Slip; 33] = [
     }),
     ("G40 deleted", |text| replaced(text, "G40 G00", "G00")),
     ("M30 deleted", |text| replaced(text, "M30\n", "")),
+    ("M30 left in the middle", |text| replaced(text, "G00 X200.", "M30\nG00 X200.")),
+    ("an old copy pasted behind", |text| Some(format!("{text}{text}"))),
+    ("speed limit in the block of a position", |text| {
+        line_with(text, "G50 S", |line| format!("{line} X200. Z150."))
+    }),
+    ("G28 through the work", |text| {
+        text.contains("T0202").then(|| replaced(text, "G00 X200. Z150.", "G28 X20. Z-20."))?
+    }),
     ("letter O for a zero", |text| replaced(text, "Z-20.", "Z-2O.")),
 ];
 

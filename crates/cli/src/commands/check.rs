@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use turnwright_diagnostics::{Diagnostic, Severity};
-use turnwright_verify::Checks;
+use turnwright_verify::{Checks, TextChecks};
 
 use crate::arguments::{Check, Format};
 use crate::environment::{ProgramText, STANDARD_INPUT, unreadable};
@@ -197,8 +197,13 @@ fn find(text: &ProgramText, options: &Check, printer: &Printer) -> Vec<Finding> 
         let part = part::machined(text, &session, &options.machine, setup, None, &mut |_, _| Ok(()));
         let part = part.ok().flatten();
         let judged = part::judged(part.as_ref(), &session.setup, execution.alarm());
+        let of_text = of_text(text);
         let of_part = part.into_iter().flat_map(|part| part.findings).chain(part::out_of_tolerance(&judged));
-        checked.findings.into_iter().chain(of_part).for_each(|finding| execution.warn(finding));
+        of_text
+            .into_iter()
+            .chain(checked.findings)
+            .chain(of_part)
+            .for_each(|finding| execution.warn(finding));
     }
     let mut findings = execution.findings();
     if options.alarms_only {
@@ -206,6 +211,13 @@ fn find(text: &ProgramText, options: &Check, printer: &Printer) -> Vec<Finding> 
         findings.retain(|finding| matches!(finding.diagnostic.severity, Severity::Alarm | Severity::Error));
     }
     findings
+}
+
+/// What the text shows as it stands.
+pub(super) fn of_text(text: &ProgramText) -> Vec<Diagnostic> {
+    let mut checks = TextChecks::default();
+    text.lines().for_each(|line| checks.add(&line));
+    checks.finish()
 }
 
 fn said(findings: &[Finding], text: Option<&ProgramText>, task: &Task<'_>) -> Checked {

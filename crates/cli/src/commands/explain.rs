@@ -252,7 +252,7 @@ const fn raised_label(why: RaisedBy) -> &'static str {
         RaisedBy::Device => "raised-device",
         RaisedBy::CommandLine | RaisedBy::Limit | RaisedBy::Note => "raised-here",
         RaisedBy::Policy | RaisedBy::Option => "raised-option",
-        RaisedBy::OutsideScope | RaisedBy::Checks => "raised-later",
+        RaisedBy::OutsideScope => "raised-later",
     }
 }
 

@@ -20,6 +20,7 @@ use turnwright_verify::Checks;
 use turnwright_verify::advice::Advisor;
 use turnwright_verify::cutting::CuttingRun;
 
+use super::check;
 use super::plot::paint;
 use super::trace::{BUFFER_BYTES, write_alarm, write_json};
 use crate::arguments::{Format, Run};
@@ -73,7 +74,8 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     progress.finish();
 
     let checked = checks.finish(&session.setup);
-    checked.findings.into_iter().for_each(|warning| execution.warn(warning));
+    let found = check::of_text(&text).into_iter().chain(checked.findings);
+    found.for_each(|warning| execution.warn(warning));
     // The second run cuts the part and takes the time: what a move removes tells where time is lost.
     let mut progress = Progress::new(&text, printer);
     let mut look = |again: &Execution<'_>, measure: &mut Measure| {

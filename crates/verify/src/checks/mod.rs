@@ -9,26 +9,29 @@ mod drill_direction;
 mod feed_mode;
 mod feed_size;
 mod groove_step;
+mod intermediate_point;
 mod offset_cancel;
 mod offset_number;
 mod overhang;
+mod preset_with_limit;
 mod stop_in_cut;
 mod thread_speed;
 mod tool_change;
+mod unfinished_figure;
 mod without_offset;
 
 use std::collections::BTreeSet;
 
 use turnwright_canon::{Action, Command, Origin, SpindleSpeed, SpindleState};
 use turnwright_control::{Setup, Tool};
-use turnwright_diagnostics::{Argument, Diagnostic, Place, SourceId};
+use turnwright_diagnostics::{Argument, Diagnostic, Place, Severity, SourceId};
 use turnwright_geometry::Bounds;
 use turnwright_units::{Position, Rpm, WorkTip};
 
 use crate::{Inference, Inferred};
 
 /// Findings of one check; more of the same say nothing new.
-const FINDINGS_MAX: usize = 20;
+pub(crate) const FINDINGS_MAX: usize = 20;
 
 /// Where things stand when a command comes.
 #[derive(Clone, Copy, Debug)]
@@ -71,13 +74,23 @@ struct Report {
 impl Report {
     /// A warning at the line of a command; once for each line.
     fn warn(&mut self, key: &'static str, origin: &Origin, arguments: Vec<(&'static str, Argument)>) {
+        self.tell(Diagnostic::warning(key), origin, arguments);
+    }
+
+    /// A note likewise: nothing need be wrong.
+    fn note(&mut self, key: &'static str, origin: &Origin) {
+        self.tell(Diagnostic::new(Severity::Note, key), origin, Vec::new());
+    }
+
+    fn tell(&mut self, told: Diagnostic, origin: &Origin, arguments: Vec<(&'static str, Argument)>) {
+        let key = told.key;
         let of_key = self.said.iter().filter(|(known, ..)| *known == key).count();
         if of_key >= FINDINGS_MAX || !self.said.insert((key, origin.source, origin.line)) {
             return;
         }
         let source = SourceId(origin.source);
         let place = Place { source, line: origin.line, line_offset: u64::MAX, column: 1, end_column: 1 };
-        let mut diagnostic = Diagnostic::warning(key).at(place);
+        let mut diagnostic = told.at(place);
         diagnostic.arguments = arguments;
         self.findings.push(diagnostic);
     }
@@ -154,8 +167,10 @@ impl Checks {
             Box::<feed_mode::FeedMode>::default(),
             Box::<feed_size::FeedSize>::default(),
             Box::<groove_step::GrooveStep>::default(),
+            Box::<intermediate_point::IntermediatePoint>::default(),
             Box::<stop_in_cut::StopInCut>::default(),
             Box::<thread_speed::ThreadSpeed>::default(),
+            Box::<unfinished_figure::UnfinishedFigure>::default(),
             Box::<without_offset::WithoutOffset>::default(),
         ];
         let of_others: Vec<Box<dyn Check>> = vec![
@@ -163,6 +178,7 @@ impl Checks {
             Box::<offset_cancel::OffsetCancel>::default(),
             Box::new(offset_number::OffsetNumber),
             Box::new(overhang::Overhang),
+            Box::<preset_with_limit::PresetWithLimit>::default(),
             Box::<tool_change::ToolChange>::default(),
         ];
         let report = Report::default();

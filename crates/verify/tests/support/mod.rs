@@ -6,7 +6,7 @@ use turnwright_control::{Control, Setup};
 use turnwright_diagnostics::{Diagnostic, Severity, SourceId};
 use turnwright_interpreter::{Environment, Interpreter, Options, ReadFault, Step};
 use turnwright_units::{Position, WorkTip};
-use turnwright_verify::Checks;
+use turnwright_verify::{Checks, TextChecks};
 
 struct Memory<'a>(&'a [u8]);
 
@@ -27,6 +27,7 @@ impl Environment for Memory<'_> {
 pub struct Run {
     pub start: Position<WorkTip>,
     pub commands: Vec<Command>,
+    pub text: Vec<Diagnostic>,
     pub alarm: Option<Diagnostic>,
     pub warnings: Vec<Diagnostic>,
 }
@@ -36,7 +37,7 @@ pub fn checked_keys(run: &Run, setup: &Setup) -> Vec<&'static str> {
     let mut checks = Checks::new(run.start);
     run.commands.iter().for_each(|command| checks.add(command));
     let found = checks.finish(setup).findings;
-    let told = run.warnings.iter().chain(&run.alarm).chain(&found);
+    let told = run.warnings.iter().chain(&run.alarm).chain(&run.text).chain(&found);
     told.filter(|diagnostic| diagnostic.severity > Severity::Note).map(|diagnostic| diagnostic.key).collect()
 }
 
@@ -49,8 +50,15 @@ pub fn run(text: &str, control: &str, setup: &Setup) -> Run {
     let options = Options { blocks_max: 100_000, idle_blocks_max: 100_000 };
     let mut interpreter =
         Interpreter::new(control, setup, SourceId(0), options).unwrap_or_else(|fault| panic!("{fault:?}"));
-    let mut run =
-        Run { start: interpreter.position(), commands: Vec::new(), alarm: None, warnings: Vec::new() };
+    let mut checks = TextChecks::default();
+    text.lines().for_each(|line| checks.add(line.as_bytes()));
+    let mut run = Run {
+        start: interpreter.position(),
+        commands: Vec::new(),
+        text: checks.finish(),
+        alarm: None,
+        warnings: Vec::new(),
+    };
     loop {
         match interpreter.step(&mut Memory(text.as_bytes())) {
             Step::Emit(command) => run.commands.push(command),
