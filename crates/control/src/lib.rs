@@ -41,7 +41,7 @@ pub use parameter_text::{
 };
 pub use parameters::{Acts, Axis, Parameter, ParameterFault, Parameters, UnderNumber};
 pub use setup::{
-    AxisPair, CheckSwitches, Mode, Offset, OffsetRow, Setup, SetupFault, ZeroRow, machine_names,
+    AxisPair, CheckSwitches, Mode, Offset, OffsetRow, Setup, SetupFault, ThreadRecord, ZeroRow, machine_names,
 };
 pub use setup_comment::setup_comment;
 pub use setup_text::setup_key_words;

@@ -106,6 +106,38 @@ pub struct Start {
     pub mode: Mode,
 }
 
+/// What the operator recorded on a thread that is to be cut again: the tool stands in the groove of the thread, and
+/// the control notes where, and how the spindle stands. The coordinate that counts is that of the thread's long axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ThreadRecord {
+    /// Work coordinate X, mm, diameter: for threads that move more in X.
+    #[serde(default)]
+    pub x: Option<f64>,
+    /// Work coordinate Z, mm: for threads that move more in Z.
+    #[serde(default)]
+    pub z: Option<f64>,
+    /// How far the spindle stands behind its index mark, degrees, counted in the direction in which it turns.
+    pub angle_deg: f64,
+}
+
+impl ThreadRecord {
+    fn check(&self) -> Result<(), (&'static str, String)> {
+        let lengths = [("x", self.x), ("z", self.z)];
+        let is_length = |mm: f64| (-1e5..=1e5).contains(&mm);
+        if let Some((key, _)) = lengths.iter().find(|(_, value)| !value.is_none_or(is_length)) {
+            return Err((key, "must be a length up to 100000 mm".to_string()));
+        }
+        if lengths.iter().all(|(_, value)| value.is_none()) {
+            return Err(("z", "the record needs z, or x for a thread across the face".to_string()));
+        }
+        if !(0.0..=360.0).contains(&self.angle_deg) {
+            return Err(("angle_deg", "must be 0 to 360".to_string()));
+        }
+        Ok(())
+    }
+}
+
 /// Where the blocks of the main program come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -157,6 +189,9 @@ pub struct Setup {
     /// How the machine stands when the program starts.
     #[serde(default)]
     pub start: Start,
+    /// The place recorded on a thread that P1 of the thread cycles repairs.
+    #[serde(default, rename = "thread-repair")]
+    pub thread_repair: Option<ThreadRecord>,
     /// Signals that end skip and measuring moves; the first that fits a move counts.
     #[serde(default)]
     pub skip: Vec<Signal>,
@@ -324,6 +359,8 @@ impl Setup {
         self.stock_outline()?;
         self.chuck_outlines()?;
         self.tailstock_outline()?;
+        let record = self.thread_repair.as_ref().map_or(Ok(()), ThreadRecord::check);
+        record.map_err(|fault| of_section("thread-repair", fault))?;
         self.tools().map(|_| ())
     }
 

@@ -7,7 +7,8 @@ use serde::Deserialize;
 
 use crate::setup::typed;
 use crate::{
-    CheckSwitches, Chuck, Language, MeasureEntry, OffsetRow, OutlinePoint, Setup, Stock, Tailstock, ToolEntry,
+    CheckSwitches, Chuck, Language, MeasureEntry, OffsetRow, OutlinePoint, Setup, Stock, Tailstock,
+    ThreadRecord, ToolEntry,
 };
 
 #[derive(Clone, Debug, Deserialize)]
@@ -92,6 +93,14 @@ fn tailstock_lines(tailstock: &Tailstock) -> Vec<Line> {
         ("centre_length_mm", Some(number(tailstock.centre_length_mm))),
         ("quill_mm", Some(number(tailstock.quill_mm))),
         ("quill_length_mm", Some(number(tailstock.quill_length_mm))),
+    ])
+}
+
+fn record_lines(record: &ThreadRecord) -> Vec<Line> {
+    given([
+        ("x", record.x.map(number)),
+        ("z", record.z.map(number)),
+        ("angle_deg", Some(number(record.angle_deg))),
     ])
 }
 
@@ -255,6 +264,9 @@ impl Setup {
         if let Some(tailstock) = &self.tailstock {
             writer.part("tailstock", tailstock_lines(tailstock));
         }
+        if let Some(record) = &self.thread_repair {
+            writer.part("thread-repair", record_lines(record));
+        }
         writer.part("checks", check_lines(&self.checks));
         for entry in &self.measure {
             writer.part("[measure]", measure_lines(entry));
@@ -295,6 +307,7 @@ mod tests {
         diameter_mm = 160\nlength_mm = 80\nrpm_max = 4500\n\
         [tailstock]\npoint_z_mm = -4\npoint_angle_deg = 60\ncentre_mm = 20\ncentre_length_mm = 50\nquill_mm = 60\n\
         quill_length_mm = 100\n\
+        [thread-repair]\nx = 30\nz = -12.5\nangle_deg = 90.25\n\
         [checks]\nallow = [\"tool-offset-differs\"]\ndeny = [\"stop-in-cut\", \"T095\"]\n\
         [tools.1]\nname = \"rough \\\"A\\\"\"\nkind = \"turning\"\nside = \"outside\"\ninsert = \"CNMG120408\"\n\
         holder = \"PCLNR2525M12\"\nentering_angle_deg = 95\nhand = \"right\"\npost = \"front\"\nnose_radius_mm = 0.8\n\
@@ -344,6 +357,7 @@ mod tests {
         add("stock", stock_lines(forging.stock.as_ref().expect("stock")));
         add("chuck", chuck_lines(whole.chuck.as_ref().expect("chuck")));
         add("tailstock", tailstock_lines(whole.tailstock.as_ref().expect("tailstock")));
+        add("thread-repair", record_lines(whole.thread_repair.as_ref().expect("a record")));
         add("checks", check_lines(&whole.checks));
         whole.measure.iter().for_each(|entry| add("measure", measure_lines(entry)));
         whole.tools.values().for_each(|tool| add("tools", tool_lines(tool)));
@@ -392,5 +406,9 @@ mod tests {
         let (line, message) = fault("[stock]\nmaterial = \"40Crr\"\n");
         assert!(line == 2 && message.contains("did you mean 40Cr?"), "{message}");
         assert!(fault("[chuck]\n").1.starts_with("chuck.jaw_z_mm: "));
+        let (line, message) = fault("[thread-repair]\nz = -3\nangle_deg = 361\n");
+        assert_eq!((line, message.as_str()), (3, "thread-repair.angle_deg: must be 0 to 360"));
+        assert_eq!(fault("[thread-repair]\nangle_deg = 1\n").0, 1);
+        assert_eq!(fault("[thread-repair]\nz = nan\nangle_deg = 1\n").0, 2);
     }
 }

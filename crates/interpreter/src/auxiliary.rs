@@ -223,6 +223,8 @@ impl Core {
         environment: &mut dyn Environment,
     ) -> Result<(), Alarm> {
         if self.active.is_some() || self.frames.len() > depth {
+            let stops_spindle = self.waiting.is_some_and(|waiting| waiting.depth == depth);
+            let auxiliary = if stops_spindle { auxiliary.with_spindle_stop_behind() } else { auxiliary };
             self.waiting = Some(Waiting { auxiliary, at: self.at, depth });
             return Ok(());
         }
@@ -250,8 +252,7 @@ impl Core {
 
     /// A cycle that has started the spindle stops it when it has run.
     pub(crate) fn stop_spindle_behind_cycle(&mut self) {
-        let auxiliary =
-            Auxiliary { spindle: Some(SpindleState::Stop), acts_behind: true, ..Auxiliary::default() };
+        let auxiliary = Auxiliary::default().with_spindle_stop_behind();
         self.waiting = Some(Waiting { auxiliary, at: self.at, depth: self.frames.len() });
     }
 
@@ -324,6 +325,16 @@ impl Auxiliary {
             Some((Flow::InterruptOn | Flow::Return, _)) => Block::bit(b'P'),
             _ => 0,
         }
+    }
+
+    /// The same, with a stop of the spindle behind the move. What the block gave out before its move stays given.
+    fn with_spindle_stop_behind(mut self) -> Self {
+        if !self.acts_behind {
+            self.coolant = None;
+        }
+        self.spindle = Some(SpindleState::Stop);
+        self.acts_behind = true;
+        self
     }
 
     pub(crate) fn has_flow(&self) -> bool {

@@ -515,6 +515,7 @@ impl Core {
             }
             // In the main program M99 starts over: one round is shown.
             self.stop_reading_ahead()?;
+            self.forget_thread_record();
             self.warn_block("main-program-repeats");
             self.emit(Action::End);
             self.is_over = true;

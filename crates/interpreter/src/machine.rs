@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use turnwright_canon::{Command, CycleOrigin, OtherAxes, PathMode};
-use turnwright_control::{Control, Mode, Parameters, Setup, SetupFault};
+use turnwright_control::{Control, Mode, Parameters, Setup, SetupFault, ThreadRecord};
 use turnwright_cycles::Element;
 use turnwright_diagnostics::{Diagnostic, Place, SourceId};
 use turnwright_syntax::Block;
@@ -190,6 +190,8 @@ pub(crate) struct Core {
     pub(crate) finished_first: Vec<u32>,
     /// Bit 0: the block before was a thread; bit 1: the block in work is one.
     pub(crate) thread_blocks: u8,
+    /// The place of a thread that the operator recorded.
+    pub(crate) thread_record: Option<ThreadRecord>,
     /// Where the thread in work started: of a chain, its first block.
     pub(crate) thread_start_angle: Angle,
     /// The thread before was left by a run-out.
@@ -351,6 +353,7 @@ impl Interpreter {
             roughed: Vec::new(),
             finished_first: Vec::new(),
             thread_blocks: 0,
+            thread_record: setup.thread_repair,
             thread_start_angle: Angle::ZERO,
             ends_in_run_out: false,
             last_spindle: None,

@@ -45,6 +45,8 @@ pub(crate) struct SingleCycle {
     pub(crate) starts: u32,
     /// The thread runs across the face.
     pub(crate) is_face_thread: bool,
+    /// The thread goes through the recorded place.
+    pub(crate) repairs: bool,
     pub(crate) pass: u32,
 }
 
@@ -178,6 +180,9 @@ pub(crate) struct Settings {
     /// The largest cutting feed was set to zero by hand.
     pub(crate) cutting_feed_is_barred: bool,
     pub(crate) thread_speed_check_off: bool,
+    pub(crate) thread_repair: bool,
+    pub(crate) thread_repair_follows: bool,
+    pub(crate) thread_record_kept: bool,
     /// Speed of leaving a thread, mm per minute; `None` is rapid traverse.
     pub(crate) thread_pull_out_feed: Option<Length>,
     pub(crate) run_out_tenths: u32,
@@ -345,6 +350,9 @@ impl Settings {
                 && Axis::TURNING.map(|axis| parameters.axis_value("cutting-feed-maximum-axis", axis))
                     == [0.0; 2],
             thread_speed_check_off: bit("thread-speed-check-off"),
+            thread_repair: bit("thread-repair"),
+            thread_repair_follows: bit("thread-repair-follows"),
+            thread_record_kept: bit("thread-record-kept"),
             thread_pull_out_feed: Some(mm("thread-pull-out-feed")).filter(|feed| feed.signum() > 0),
             run_out_tenths: count("thread-run-out"),
             run_in_depth: mm("thread-run-in"),

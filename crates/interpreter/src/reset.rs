@@ -50,6 +50,9 @@ impl Core {
             Ending::EndAndRewind => self.settings.no_rewind_at_end,
         };
         self.drop_work();
+        if ending == Ending::EndAndRewind {
+            self.forget_thread_record();
+        }
         if self.settings.program_end_clears_local {
             self.with_new_zero(|core| core.zeros.clear_local());
         } else if !self.settings.reset_clears_local && self.zeros.has_local() {
@@ -61,6 +64,13 @@ impl Core {
         self.has_untold_place = self.tip != told.1;
         if !stays {
             self.rewind();
+        }
+    }
+
+    /// The control forgets the recorded place of a thread, unless its parameter keeps it.
+    pub(crate) fn forget_thread_record(&mut self) {
+        if !self.settings.thread_record_kept {
+            self.thread_record = None;
         }
     }
 

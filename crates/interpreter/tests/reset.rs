@@ -110,3 +110,29 @@ fn parts_are_counted_at_the_end_and_by_their_code() {
     let machine = interpreter("gsk-988ta", &[("6713", "250")], "");
     assert_eq!(machine.parts().wanted, 250);
 }
+
+#[test]
+fn the_end_forgets_the_record_of_a_thread_unless_its_parameter_keeps_it() {
+    let record = "[thread-repair]\nz = 0\nangle_deg = 10\n";
+    let runs = |kept: &str, end: &str| {
+        let parameters = [("174#4", "1"), ("174#5", "1"), ("1290", kept)];
+        let mut machine = interpreter("gsk-980tdi", &parameters, record);
+        let text = format!("S500 M03\nG00 X30 Z5\nG92 X20 Z-20 F2 P1\nG00 X50\n{end}\n");
+        let (first, ends) = go(&mut machine, &text, usize::MAX);
+        assert!(ends && first.len() > 5);
+        machine.reset();
+        let mut again = Memory { text: text.as_bytes(), skips: &[], setup: None, bytes_at_once: 0 };
+        loop {
+            match machine.step(&mut again) {
+                Step::Alarm(alarm) => return alarm.key,
+                Step::End => return "none",
+                Step::Emit(_) | Step::NeedSync(_) => {}
+            }
+        }
+    };
+    assert_eq!(runs("0", "M30"), "thread-record-missing");
+    assert_eq!(runs("0", "M99"), "thread-record-missing");
+    assert_eq!(runs("0", "M02"), "none");
+    assert_eq!(runs("1", "M30"), "none");
+    assert_eq!(runs("1", "M99"), "none");
+}

@@ -12,6 +12,12 @@
 //! share of the turn, P1 a thread across the face. They stay in force like X and Z; Q does not. The way out of a
 //! thread is at rapid, or at the speed set for it (1466).
 //!
+//! Where P1 is the repair of a thread (a 980 with 174#4), the operator has recorded a place in the groove of the old
+//! thread: the coordinate along the thread and the angle of the spindle, `[thread-repair]` of the setup file. The
+//! start angle then is the one with which the thread goes through that place; with several starts, the first one
+//! does. P1 stands in the first block and stays in force with the code. What acceleration loses (parameter 191 of
+//! the machine) is not in it.
+//!
 //! X, Z and R stay in force while the code does: a block with a new X repeats the cycle from the same start
 //! point, one with `U0` or `W0` repeats it as it was. A code of its own without any axis word only takes effect with the next axis word.
 //!
@@ -24,12 +30,15 @@
 //!
 //! Deliberately not here: `G92.3`, of whose equal crests no text at hand says how the tool moves.
 //!
-//! Source: single canned cycles of both families.
+//! Source: single canned cycles of both families; thread repair: programming help of the 980TDi, version 6.10.
 
 use turnwright_canon::SpindleState;
 use turnwright_control::policy::{RunOutLengthAlone, RunOutWords, TaperSign, ThreadCycleWords};
 use turnwright_cycles as cycles;
-use turnwright_units::{Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position};
+use turnwright_syntax::Word;
+use turnwright_units::{
+    Angle, Diameter, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position, Radius,
+};
 
 use super::multi_thread::{self, run_out};
 use super::{Function, letters};
@@ -130,6 +139,7 @@ fn thread_with(core: &mut Core, call: &mut Call<'_>, own: &[u8], run_in: RunInOf
     let start_angle = core.start_angle(call)?;
     core.check_thread(call, lead)?;
     let taper = core.modal.cycle.taper;
+    let start_angle = core.repair_angle(call, lead, end)?.unwrap_or(start_angle);
     core.check_taper(call, first, end, taper)?;
     if !is_face && call.word.is_some() {
         core.check_lead_in(end, lead, 0.0);
@@ -200,13 +210,62 @@ impl Core {
             self.modal.cycle.starts = self.thread_starts(word)?;
         }
         if let Some(word) = call.block.word(b'P') {
-            let form = self.whole(word, 1)?;
-            if form == 1 && self.control.policies.thread_cycle_words == ThreadCycleWords::StartsAndRepair {
-                return Err(self.not_supported("thread-repair", word));
+            if self.control.policies.thread_cycle_words == ThreadCycleWords::StartsAndRepair {
+                return self.thread_repair_word(word);
             }
-            self.modal.cycle.is_face_thread = form == 1;
+            self.modal.cycle.is_face_thread = self.whole(word, 1)? == 1;
         }
         Ok(())
+    }
+
+    /// P1 repairs a thread, any other P does not.
+    fn thread_repair_word(&mut self, word: &Word) -> Result<(), Alarm> {
+        let asks = self.whole(word, 99_999_999)? == 1;
+        let follows = self.modal.motion.get().name == THREAD_CYCLE.name;
+        if asks && !self.settings.thread_repair {
+            self.warn("thread-repair-off", word);
+        } else if asks && follows != self.settings.thread_repair_follows {
+            self.warn("thread-repair-way-differs", word);
+        }
+        self.modal.cycle.repairs = asks && self.settings.thread_repair;
+        Ok(())
+    }
+
+    /// The start angle with which a repaired thread goes through the recorded place: the spindle turns once for
+    /// each lead between the start of the thread and that place.
+    fn repair_angle(
+        &mut self,
+        call: &Call<'_>,
+        lead: Lead,
+        end: Position<turnwright_units::WorkTip>,
+    ) -> Result<Option<Angle>, Alarm> {
+        if !self.modal.cycle.repairs {
+            return Ok(None);
+        }
+        let start = Position::new(end.x + Radius(self.modal.cycle.taper), self.modal.position.z);
+        let (way, record) = (end - start, self.thread_record);
+        let length = |mm: f64| Length::from_nm((mm * 1e6).round() as i64);
+        let (from, to, place) = if way.x.0.abs() > way.z.abs() {
+            let x = record.and_then(|record| record.x).map(|mm| Diameter(length(mm)).to_radius().0);
+            (start.x.0, end.x.0, x)
+        } else {
+            (start.z, end.z, record.and_then(|record| record.z).map(length))
+        };
+        let word = call.block.word(b'P').or(call.word);
+        let (Some(place), Some(record)) = (place, record) else {
+            return Err(self.alarm_at("thread-record-missing", word));
+        };
+        if place < from.min(to) || place > from.max(to) {
+            return Err(self.alarm_at("thread-record-outside", word));
+        }
+        if let Some(word) = call.block.word(b'Q') {
+            self.warn("thread-repair-overrules-angle", word);
+        }
+        let turn = Angle::TURN.nanodegrees();
+        let turned = i128::from((place - from).abs().nm()) * i128::from(turn) / i128::from(lead.0.nm());
+        let recorded = (record.angle_deg * 1e9).round() as i128;
+        let angle = (recorded - turned).rem_euclid(i128::from(turn));
+        Ok(Some(Angle::from_millidegrees(Angle::from_nanodegrees(angle as i64).millidegrees() % 360_000)))
     }
 
     /// Length and depth of the run-out: J and K when one of them is in force, else by the parameters.
