@@ -284,12 +284,74 @@ test("in space the part is drawn, is cut open, and changes with the time", async
   assert.equal(await seen(), null);
 });
 
+// Where the line of the plots is, as a share of the slider's time; the plots have a margin at both sides.
+const cursorShare = () => page.evaluate(() => {
+  const [host, line] = ["#plots", ".plot-cursor"].map((one) => document.querySelector(one).getBoundingClientRect());
+  return (line.left + line.width / 2 - host.left - 52) / (host.width - 62);
+});
+
+test("the lanes over time show the moment of the slider, and a press on them leads to it", async () => {
+  await open(drawn);
+  const lanes = await page.evaluate(() => turnwright.plots.lanes());
+  assert.deepEqual(lanes, ["X ⌀ mm", "Z mm", "speed mm/min", "spindle rpm", "depth of cut", "chip thickness", "surface speed",
+    "removal rate", "theoretical roughness Rz"]);
+  for (const share of [0, 0.25, 0.9]) {
+    await page.evaluate((share) => turnwright.goToTime(share * turnwright.totalTime), share);
+    assert.ok(Math.abs((await cursorShare()) - share) < 0.01, `${share}: ${await cursorShare()}`);
+  }
+  // The values of the lanes are those of the moment: at the end the tool stands at X100 Z50.
+  await page.keyboard.press("End");
+  assert.match(await page.textContent("#plots .lane"), /X ⌀ mm .*100/);
+  await page.locator("#plots").scrollIntoViewIfNeeded();
+  const box = await page.locator("#plots").boundingBox();
+  const press = (share) => [box.x + 52 + share * (box.width - 62), box.y + 300];
+  await page.mouse.click(...press(0.4));
+  const [time, line, row] = await page.evaluate(() => [turnwright.time / turnwright.totalTime, turnwright.currentLine, Number(document.querySelector(".row.current")?.dataset.line)]);
+  assert.ok(Math.abs(time - 0.4) < 0.01, `${time}`);
+  assert.ok(line > 0 && row === line, "the block of the moment is lit");
+  assert.ok(Math.abs(Number(await page.inputValue("#position")) - 0.4 * (await page.evaluate(() => turnwright.totalTime))) < 2);
+  // The line follows a finger.
+  await page.mouse.move(...press(0.4));
+  await page.mouse.down();
+  await page.mouse.move(...press(0.7), { steps: 3 });
+  await page.mouse.up();
+  assert.ok(Math.abs((await page.evaluate(() => turnwright.time / turnwright.totalTime)) - 0.7) < 0.01);
+  await page.mouse.move(...press(0.1));
+  assert.ok(Math.abs((await cursorShare()) - 0.7) < 0.01, "without a press nothing moves");
+});
+
+test("the peaks of the cutting data lead to their lines and moments", async () => {
+  await open(drawn);
+  const peaks = await page.$$eval("#peaks li", (all) => all.map((one) => one.textContent));
+  assert.equal(peaks.length, 5);
+  assert.match(peaks[0], /depth of cut up to 3\.000 mm \(line 26, tool 2\)/);
+  assert.match(await page.textContent("#peaks-note"), /names the material/);
+  const first = page.locator("#peaks li").first();
+  await first.locator(".link", { hasText: "line 26" }).click();
+  assert.equal(await page.evaluate(() => turnwright.selectedLine), 26);
+  await first.locator(".link", { hasText: "show the moment" }).click();
+  assert.equal(await page.evaluate(() => turnwright.currentLine), 26);
+  await page.keyboard.press("l");
+  assert.match(await page.textContent("#peaks li"), /切削深度/);
+  assert.match(await page.textContent("#plots"), /主轴/);
+});
+
+test("on a phone the lanes are as wide as the page, and no wider", async () => {
+  await open(drawn, { viewport: { width: 390, height: 844 } });
+  const [page_, plots] = await page.evaluate(() => [document.documentElement.scrollWidth, document.querySelector("#plots svg").getBoundingClientRect().width]);
+  assert.ok(page_ <= 390 && plots > 330, `${page_} ${plots}`);
+  await page.setViewportSize({ width: 800, height: 600 });
+  await settle();
+  assert.ok((await page.locator("#plots svg").boundingBox()).width > 700, "turned to the side they grow");
+});
+
 test("--no-3d leaves three.js out, and the button with it", async () => {
   const small = reportOf("small", DRAWN, "--no-3d");
   const saved = statSync(drawn).size - statSync(small).size;
   assert.ok(saved > 500_000, `${saved} bytes less`);
   await open(small);
   assert.equal(await page.locator("#solid-shown").isVisible(), false);
+  assert.ok(await page.locator("#plots svg").isVisible(), "the lanes stay");
   await page.keyboard.press("s");
   assert.ok(await page.locator("#picture").isVisible());
 });

@@ -529,6 +529,7 @@
     const steps_ = word("step-of", { n: step, of: steps });
     byId("count").textContent = timed ? `${clockFace(now())} / ${clockFace(totalTime)} · ${steps_}` : steps_;
     byId("position").value = now();
+    plots.show(now());
   };
   function movesOfSelection() {
     const all = [];
@@ -627,52 +628,10 @@
     document.querySelector("main").scrollIntoView({ block: "nearest" });
   } }, text);
   const makeTables = reportTables({ run, byId, element, word, inLanguage, number, seconds, lineButton, placeButton, SIGNS, kind, KINDS, LOOK, model, marks, hasSolid });
-  const passRow = (at, row) => byId(`pass-${at}-${row}`);
-  const selectPass = (at, row) => {
-    select(cycles[at].passes[row].line, cycles[at].passes[row].line, -1, [at, row]);
-    document.querySelector("main").scrollIntoView({ block: "nearest" });
-  };
-  // A table is made when it is opened: a long program has thousands of passes.
-  const fillCycle = (details) => {
-    if (details.childElementCount > 1) return;
-    const at = Number(details.dataset.cycle), { settings, passes } = cycles[at];
-    const cell = (text, kind) => element("td", { class: kind }, text);
-    const place = ([x, z]) => `${number(x, 4)}, ${number(z, 4)}`;
-    const head = [["number", 1], ["phase", 0], ["depth", 1], ["from", 1], ["to", 1], ["cause", 0]];
-    details.append(
-      element("p", { class: "settings" }, ...settings.map((one) =>
-        element("span", {}, `${inLanguage(one.name)} ${number(one.value, 4)} (${causeText(one.cause)})`))),
-      element("div", { class: "scroll" }, element("table", {},
-        element("thead", {}, element("tr", {}, ...head.map(([key, quantity]) =>
-          element("th", { scope: "col", class: quantity ? "quantity" : undefined }, word("pass-" + key))))),
-        element("tbody", {}, ...passes.map((pass, row) => element("tr", { id: `pass-${at}-${row}` },
-          element("td", { class: "quantity" }, element("button", { type: "button", class: "link", onclick: () => selectPass(at, row) }, String(pass.number))),
-          cell(word("phase-" + pass.phase)), cell(number(pass.depth, 4), "quantity"),
-          cell(place(pass.from), "quantity"), cell(place(pass.to), "quantity"), cell(causesText(pass), "cause")))))));
-  };
-  const CYCLE_PASSES_OPEN = 200;
-  const makeCycles = () => {
-    const open = new Set([...document.querySelectorAll("#cycles details[open]")].map((one) => Number(one.dataset.cycle)));
-    const isFirst = byId("cycles").childElementCount === 0;
-    const few = cycles.reduce((sum, { passes }) => sum + passes.length, 0) <= CYCLE_PASSES_OPEN;
-    byId("cycles").replaceChildren(...cycles.map(({ code, name, line, passes }, at) => {
-      const details = element("details", { "data-cycle": at },
-        element("summary", {}, word(passes.length === 1 ? "cycle-summary-one" : "cycle-summary", { code, name: inLanguage(name), n: passes.length }),
-          ...(line > 0 ? [lineButton(word("line", { n: line }), line, line)] : [])));
-      if (isFirst ? few : open.has(at)) { details.open = true; fillCycle(details); }
-      details.addEventListener("toggle", () => { if (details.open) { fillCycle(details); markPass(); } });
-      return details;
-    }));
-    byId("cycles").closest("section").hidden = cycles.length === 0;
-    markPass();
-  };
-  function markPass() {
-    document.querySelectorAll("#cycles tr[aria-current]").forEach((row) => row.removeAttribute("aria-current"));
-    if (!pickedPass) return;
-    const details = document.querySelector(`#cycles details[data-cycle="${pickedPass[0]}"]`);
-    if (details && !details.open) { details.open = true; fillCycle(details); }
-    passRow(...pickedPass)?.setAttribute("aria-current", "true");
-  }
+  const plots = timePlots(run.plots, { byId, element, word, inLanguage, number, clockFace, lineButton, goToTime, setPlaying });
+  const { makeCycles, markPass } = cycleTables({
+    cycles, byId, element, word, inLanguage, number, lineButton, causeText, causesText, select, pickedPass: () => pickedPass,
+  });
   // ---- language ----------------------------------------------------------------------------------------
   const labelPlay = () => {
     const text = word(playing ? "pause" : "play");
@@ -691,6 +650,7 @@
     labelPlay();
     makeTables();
     makeCycles();
+    plots.relabel();
     showRows(true);
     readout();
     redraw();
@@ -891,7 +851,7 @@
     }),
     get solid() { return solidShown ? { walls: solid.walls, painted: solid.painted(), isOpen: solid.isOpen } : null; },
     linesOfMoves: () => Array.from(path.line),
-    goToTime,
+    goToTime, plots,
     lineOf: (i) => path.line[moveOf[i]],
     selectLine: (line) => select(line), goTo, fit, setLanguage,
   };

@@ -294,7 +294,6 @@ fn report(language: Language, cycles: Vec<Cycle>) -> Report<'static> {
     });
     Report {
         assumptions: Vec::new(),
-        part: None,
         title: "demo-shaft.nc".into(),
         control: "fanuc-0i-tf".into(),
         control_reason: "nothing else was asked for".into(),
@@ -346,6 +345,7 @@ fn report(language: Language, cycles: Vec<Cycle>) -> Report<'static> {
             "Times are estimates: rapid rates and accelerations are those of a typical machine.".into(),
         estimated_note_zh: "时间为估算值：快移速度与加速度取自典型机床。".into(),
         language,
+        ..Report::default()
     }
 }
 

@@ -31,17 +31,18 @@ impl RunReport {
         if lines.is_empty() {
             return None;
         }
-        let note = match self.cutting.material {
-            Some(material) => {
-                let (kc, mc) = (material.kc11_n_per_mm2.to_string(), material.mc.to_string());
-                let title = material.title(speech.language);
-                let values =
-                    [("material", material.name.as_str()), ("title", title), ("kc", &kc), ("mc", &mc)];
-                speech.fill("cutting-of-material", &values)
-            }
-            None => speech.get("cutting-without-material").to_string(),
+        Some(format!("{}\n{}", lines.join("\n"), self.material_note(speech)))
+    }
+
+    /// What force and power rest on.
+    fn material_note(&self, speech: Speech) -> String {
+        let Some(material) = self.cutting.material else {
+            return speech.get("cutting-without-material").to_string();
         };
-        Some(format!("{}\n{note}", lines.join("\n")))
+        let (kc, mc) = (material.kc11_n_per_mm2.to_string(), material.mc.to_string());
+        let title = material.title(speech.language);
+        let values = [("material", material.name.as_str()), ("title", title), ("kc", &kc), ("mc", &mc)];
+        speech.fill("cutting-of-material", &values)
     }
 
     fn peak_text(&self, quantity: Quantity, speech: Speech) -> Option<String> {
@@ -103,20 +104,24 @@ impl RunReport {
             return None;
         }
         let row = |quantity: Quantity| {
-            let (peak, _) = data.peak(quantity)?;
-            let index = quantity as usize;
+            let (peak, peak_at) = data.peak(quantity)?;
+            let (index, (unit, decimals)) = (quantity as usize, unit(quantity));
             let of_course = data.course.iter();
             let steps = of_course.filter_map(|step| Some((step.from_s, step.to_s, step.values[index]?)));
             Some(Row {
+                name: speech.find(&format!("cutting-{}", quantity.word())).to_string(),
                 label: self.peak_text(quantity, speech)?,
                 peak,
-                peak_text: format!("{peak:.*} {}", unit(quantity).1, unit(quantity).0),
+                // Lines of other texts are not in the page.
+                peak_line: if peak_at.source == 0 { peak_at.line } else { 0 },
+                unit,
+                decimals,
                 steps: steps.collect(),
             })
         };
         Some(CuttingPicture {
             title: self.title(),
-            subtitle: speech.get("cutting-title").to_string(),
+            subtitle: self.material_note(speech),
             rows: Quantity::ALL.into_iter().filter_map(row).collect(),
             total_s: self.measure.summary.totals().total_s(),
             language: picture_language(speech.language),

@@ -2,6 +2,7 @@
 
 use std::mem;
 
+use turnwright_export::formats::cutting_svg::CuttingPicture;
 use turnwright_export::formats::html::{
     AssumptionRow, CycleTable, Fact, OperationRow, PlaceMark, Report, ReportDiagnostic, ReportPart,
     write_html,
@@ -72,6 +73,8 @@ impl RunReport {
             diagnostics: self.findings.iter().map(|finding| self.page_diagnostic(finding, text)).collect(),
             assumptions: assumptions.collect(),
             part: self.page_part(has_solid),
+            timeline: self.measure.timeline.as_ref(),
+            cutting: self.page_cutting(),
             facts,
             estimated_note_en,
             estimated_note_zh,
@@ -158,6 +161,11 @@ impl RunReport {
         let (part, shape) = self.part.as_ref()?;
         let Part { history, stock, tools, obstacles, .. } = part;
         Some(ReportPart { history: history.as_ref()?, shape, stock, tools, obstacles, has_solid })
+    }
+
+    fn page_cutting(&self) -> Option<[CuttingPicture; 2]> {
+        let [english, chinese] = SPEECHES.map(|speech| self.cutting_picture(speech));
+        Some([english?, chinese?])
     }
 
     fn page_facts(&self) -> Vec<Fact> {

@@ -20,12 +20,18 @@ const TICKS: f64 = 8.0;
 /// One quantity over time.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// What it is, with its greatest value and the line of that.
+    /// What it is.
+    pub name: String,
+    /// The same with its greatest value and the line of that.
     pub label: String,
     /// The greatest value: the height of the strip.
     pub peak: f64,
-    /// The same with its unit.
-    pub peak_text: String,
+    /// The line where that is.
+    pub peak_line: u32,
+    /// In what it is measured.
+    pub unit: &'static str,
+    /// Decimal places that mean something.
+    pub decimals: usize,
     /// Begin, end and value.
     pub steps: Vec<(f64, f64, f64)>,
 }
@@ -77,7 +83,7 @@ pub fn write_cutting_svg(picture: &CuttingPicture) -> String {
             WIDTH_PX - LEFT_PX - RIGHT_PX,
             LEFT_PX - 6.0,
             top + 11.0,
-            escape_xml(&row.peak_text),
+            escape_xml(&format!("{:.*} {}", row.decimals, row.peak, row.unit)),
             LEFT_PX - 6.0,
         );
         let mut data = String::new();

@@ -5,6 +5,7 @@
 //! JSON, so that no text of a program ever becomes markup. Deliberately not here: choosing words.
 
 mod part;
+mod plots;
 
 use serde_json::{Value, json};
 use turnwright_canon::Phase;
@@ -12,10 +13,12 @@ use turnwright_diagnostics::Severity;
 use turnwright_units::write_fixed;
 
 pub use self::part::{PlaceMark, ReportPart};
+use super::cutting_svg::CuttingPicture;
 use super::svg::{escape_xml, shown_extents};
 use crate::Language;
 use crate::passes::{Cause, Cycle, GivenWord, Pass};
 use crate::path::{Advance, Move, PathRecorder, Segment, SegmentKind};
+use crate::timeline::Timeline;
 use crate::words::{REPORT_TEXTS, Words};
 
 /// Segments in one report; about 20 MB of HTML. The report says when there are more.
@@ -29,6 +32,8 @@ const SCRIPT: &str = concat!(
     include_str!("../../assets/report-drawing.js"),
     include_str!("../../assets/report-solid.js"),
     include_str!("../../assets/report-tables.js"),
+    include_str!("../../assets/report-cycles.js"),
+    include_str!("../../assets/report-plots.js"),
     include_str!("../../assets/report.js")
 );
 
@@ -60,6 +65,10 @@ pub struct Report<'a> {
     pub assumptions: Vec<AssumptionRow>,
     /// The part that comes out, where there is stock.
     pub part: Option<ReportPart<'a>>,
+    /// Places and speeds over time.
+    pub timeline: Option<&'a Timeline>,
+    /// The cutting data over the same time, in English and in Chinese.
+    pub cutting: Option<[CuttingPicture; 2]>,
     /// What the times rest on, English; may be empty.
     pub estimated_note_en: String,
     /// What the times rest on, Chinese; may be empty.
@@ -260,6 +269,12 @@ fn run_json(path: &PathRecorder, report: &Report<'_>) -> String {
     if let Some(part) = &report.part {
         json.push_str(",\n\"part\":");
         json.push_str(&part.json(kept.moves));
+    }
+    if let Some(plots) =
+        report.timeline.and_then(|timeline| plots::plots_json(timeline, report.cutting.as_ref()))
+    {
+        json.push_str(",\n\"plots\":");
+        json.push_str(&inert_json(&plots.to_string()));
     }
     json.push('}');
     json

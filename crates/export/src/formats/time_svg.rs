@@ -36,19 +36,20 @@ pub struct TimePicture {
 }
 
 /// A lane: one value over time.
-struct Lane {
-    title: &'static str,
+pub(super) struct Lane {
+    /// Key of its name.
+    pub(super) title: &'static str,
     /// Line and area.
     look: &'static str,
     /// The values of a column that is so many seconds long.
-    value: fn(&Moment, f64) -> Range,
+    pub(super) value: fn(&Moment, f64) -> Range,
     /// From the lower to the upper edge.
-    scale: Scale,
+    pub(super) scale: Scale,
 }
 
 /// How values become heights.
 #[derive(Clone, Copy, Debug)]
-enum Scale {
+pub(super) enum Scale {
     /// Between what occurs.
     Fitted,
     /// From zero to what occurs.
@@ -57,6 +58,7 @@ enum Scale {
     Powers,
 }
 
+/// Those of a program; the last is known where somebody knows what was removed.
 const LANES: [Lane; 5] = [
     Lane { title: "time-lane-x", look: "#0b4f9e", value: |moment, _| moment.x_mm, scale: Scale::Fitted },
     Lane { title: "time-lane-z", look: "#00695c", value: |moment, _| moment.z_mm, scale: Scale::Fitted },
@@ -84,7 +86,7 @@ const SHARES: [(&str, &str); 3] =
 pub fn write_time_svg(timeline: &Timeline, picture: &TimePicture) -> String {
     let words = Words::new(picture.language);
     let columns = Columns::of(timeline);
-    let lanes: &[Lane] = if timeline.has_removal() { &LANES } else { &LANES[..4] };
+    let lanes = lanes(timeline);
     let bottom_px = TOP_PX + lanes.len() as f64 * (LANE_PX + GAP_PX);
     let height_px = bottom_px + 40.0;
     let mut svg = String::with_capacity(256 * 1024);
@@ -117,16 +119,22 @@ pub fn write_time_svg(timeline: &Timeline, picture: &TimePicture) -> String {
     svg
 }
 
+/// The lanes of a program.
+pub(super) fn lanes(timeline: &Timeline) -> &'static [Lane] {
+    if timeline.has_removal() { &LANES } else { &LANES[..4] }
+}
+
 /// What is drawn side by side.
-struct Columns {
-    moments: Vec<Moment>,
-    seconds: f64,
+pub(super) struct Columns {
+    pub(super) moments: Vec<Moment>,
+    /// How long each is.
+    pub(super) seconds: f64,
     /// Pixels of a second.
     px_per_s: f64,
 }
 
 impl Columns {
-    fn of(timeline: &Timeline) -> Self {
+    pub(super) fn of(timeline: &Timeline) -> Self {
         let (mut moments, mut seconds) = (timeline.moments().to_vec(), timeline.moment_s());
         while moments.len() > COLUMNS_MAX {
             moments = moments
