@@ -181,7 +181,8 @@ policies! {
         WithOldCode,
         /// Offsets and work zeros; parameters with L50 or L52.
         WithEitherCode,
-        /// Tool life with L3, and with L52 parameters, which are read too; no offsets.
+        /// Tool life with L3, where foreign words are passed over, and with L52 parameters, which are read too and
+        /// where P counts for parameters of axes alone; no offsets.
         ListsOnly,
     }
     /// A T word in a block that sets data.
@@ -298,6 +299,13 @@ policies! {
         /// Straight in the polar plane.
         Allowed,
     }
+    /// A T word in polar interpolation.
+    polar_tool: PolarTool {
+        /// Acts as ever.
+        Allowed,
+        /// Refused: the tool is called and positioned before the mode begins.
+        Alarm,
+    }
     /// A feed at which the rotary axis cannot follow near the spindle axis in polar interpolation.
     polar_overspeed: PolarOverspeed {
         /// Refused.
@@ -311,6 +319,38 @@ policies! {
         Never,
         /// With `K1` in the block that begins it.
         ByWord,
+    }
+    /// The words J K R L of cylindrical interpolation: the figure is roughed in passes.
+    cylinder_roughing: CylinderRoughing {
+        /// There are none.
+        Absent,
+        /// X stands at the depth of the figure when the cycle begins: the last pass runs there.
+        FigureAtStart,
+        /// X stands at the uncut surface when the cycle begins: the figure lies below it by depth and allowance.
+        SurfaceAtStart,
+    }
+    /// Which of those words are diameters.
+    cylinder_roughing_words: CylinderRoughingWords {
+        /// As in the pattern cycle, whose names they have: K is one, J and R are radii.
+        AsInPattern,
+        /// None: all are radii.
+        Radii,
+        /// All of them.
+        Diameters,
+    }
+    /// Whether the depth J of those words counts the allowance K in.
+    cylinder_roughing_total: CylinderRoughingTotal {
+        /// No: K remains below it.
+        WithoutAllowance,
+        /// Yes: roughing takes J less K.
+        WithAllowance,
+    }
+    /// The sign of J among those words.
+    cylinder_roughing_sign: CylinderRoughingSign {
+        /// That of the way into the work: negative cuts towards the spindle axis.
+        WayIn,
+        /// That of the way from the figure to the surface, as in the pattern cycle.
+        WayOut,
     }
     /// Repetitive cycles with everything in one block, beside those in two.
     cycle_form: CycleForm {

@@ -256,7 +256,13 @@ impl Core {
         if self.axes.polar_words {
             return self.polar_point(block);
         }
-        let to = self.target(block)?;
+        let mut to = self.target(block)?;
+        if let Some(roughing) = &self.cylinder_roughing
+            && block.has(b'X')
+            && !self.modal.is_incremental
+        {
+            to.x = to.x + roughing.shift();
+        }
         let ends = self.other_targets(block)?;
         Ok((to, ends))
     }

@@ -141,6 +141,7 @@ impl Core {
         }
         if self.axes.is_virtual() {
             self.check_virtual_plane(block)?;
+            self.check_cylinder_figure(block, &auxiliary)?;
         }
         if codes.one_shot.is_some() && codes.motion.is_some() {
             self.one_shot_with_motion(block, &codes)?;
@@ -368,9 +369,8 @@ impl Core {
         match functions.by_code(code, self.dispatch.system, self.control.code_table) {
             Some((name, entry)) => {
                 let mut alarm = self.not_supported(name, word);
-                if entry.outside_scope {
-                    alarm.key = "function-outside-scope";
-                }
+                alarm.key =
+                    if entry.outside_scope { "function-outside-scope" } else { "function-undescribed" };
                 alarm
             }
             None => {
@@ -519,6 +519,7 @@ impl Core {
                 return Err(self.alarm("tool-not-allowed-here", word));
             }
             self.tool_word(word)?;
+            self.refuse_nose_outside_plane(word)?;
         }
         if let Some(state) = auxiliary.spindle_before() {
             self.modal.spindle = state;

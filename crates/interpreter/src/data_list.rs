@@ -9,11 +9,13 @@
 //! Tool life: `P_ L_ Q_` opens a group with its life (Q1 a count, Q2 minutes), the `T_` blocks behind it are its
 //! tools. The data is kept and changes nothing: no tool wears in one run.
 //!
-//! Any other word in a list is refused. Source: data setting of both families; passwords are protected on the
+//! Any other word in a list is refused; a control that has nothing but lists passes over those of tool life, and over P
+//! where the parameter is none of an axis. Source: data setting of both families; passwords are protected on the
 //! newer ones.
 
 use std::collections::BTreeMap;
 
+use turnwright_control::policy::DataSetting;
 use turnwright_control::{Axis, Parameter, ParameterFault};
 use turnwright_diagnostics::{Diagnostic, Severity};
 use turnwright_syntax::{Block, Word};
@@ -117,11 +119,26 @@ impl Core {
         let axis = match block.word(b'P') {
             Some(word) => {
                 let axis = self.axes.machine.numbered(self.whole(word, 99)? as usize);
-                Some(axis.ok_or_else(|| self.alarm("parameter-input-format", word))?)
+                let under = self.control.parameters.under_number(number);
+                let has_axes = under.as_ref().is_some_and(|under| {
+                    let whole = under.whole.iter().map(|(_, parameter)| parameter);
+                    whole
+                        .chain(under.bits.iter().map(|(_, parameter)| parameter))
+                        .any(|one| one.is_per_axis())
+                });
+                if axis.is_none() && (has_axes || !self.passes_over_words()) {
+                    return Err(self.alarm("parameter-input-format", word));
+                }
+                axis
             }
             None => None,
         };
         Ok((name, number, axis))
+    }
+
+    /// Words without a meaning in lists are passed over.
+    fn passes_over_words(&self) -> bool {
+        self.control.policies.data_setting == DataSetting::ListsOnly
     }
 
     /// Writes a parameter.
@@ -204,6 +221,7 @@ impl Core {
         let address = match (parameter.is_per_axis(), axis) {
             (true, Some(axis)) => format!("{number}.{}", axis.letter()),
             (false, None) => number.to_string(),
+            (false, Some(_)) if self.passes_over_words() => number.to_string(),
             _ => return Err(self.alarm_block("parameter-input-format")),
         };
         self.control.parameters.set(&address, amount).map_err(|fault| match fault {
@@ -263,7 +281,8 @@ impl Core {
             // Of a word of bits only some are known.
             return Err(self.not_supported("data-setting", name));
         };
-        if parameter.is_per_axis() != axis.is_some() {
+        let names_none = !parameter.is_per_axis() && self.passes_over_words();
+        if parameter.is_per_axis() != axis.is_some() && !names_none {
             return Err(self.alarm_block("parameter-input-format"));
         }
         self.settings.store(&mut self.control.parameters);
@@ -304,8 +323,20 @@ impl Core {
         Ok(DataList::ToolLife { group: None, deletes: how == 2 })
     }
 
+    /// Words that are none of a list: passed over with a warning, or refused.
+    fn foreign_words(&mut self, block: &Block, letters: &[u8]) -> Result<(), Alarm> {
+        if !self.passes_over_words() {
+            return self.refuse_other_words(block, letters);
+        }
+        let is_foreign = |word: &&Word| word.comma || !letters.contains(&word.address);
+        if let Some(word) = block.words.iter().find(is_foreign).copied() {
+            self.warn("word-passed-over-in-list", &word);
+        }
+        Ok(())
+    }
+
     fn tool_life_block(&mut self, block: &Block, group: Option<u32>, deletes: bool) -> Result<(), Alarm> {
-        let foreign = |core: &Self, letters| core.refuse_other_words(block, letters);
+        let foreign = |core: &mut Self, letters| core.foreign_words(block, letters);
         if let Some(word) = block.word(b'P') {
             foreign(self, if deletes { b"NP" } else { b"NPLQ" })?;
             let number = self.whole(word, 9_999)?;
@@ -331,7 +362,7 @@ impl Core {
             return Ok(());
         }
         let Some(word) = block.word(b'T') else {
-            return Err(self.alarm_at("data-setting-words-illegal", block.words.first()));
+            return foreign(self, b"N");
         };
         foreign(self, b"NT")?;
         let tool = self.whole(word, 99_999_999)?;

@@ -591,6 +591,9 @@ impl Core {
         if self.is_in_figure() {
             return Err(self.figure_without_end());
         }
+        if self.cylinder_roughing.is_some() {
+            return Err(self.alarm_block("cylinder-roughing-without-end"));
+        }
         if self.settings.end_of_record_allowed && self.frames.is_empty() {
             self.warn_of_compensation(None);
             self.end_compensation()?;

@@ -18,6 +18,7 @@ use crate::corner::OpenPath;
 use crate::data_list::{DataList, ToolLife};
 use crate::figure::{FigureRange, Roughed};
 use crate::flow::{Frame, Resume};
+use crate::functions::cylinder_roughing::CylinderRoughing;
 use crate::functions::reference_return::Homing;
 use crate::functions::{Dispatch, FunctionId};
 use crate::in_force::{InForce, MOTION};
@@ -175,6 +176,8 @@ pub(crate) struct Core {
     /// What the block of the cycle in work does when the cycle has run.
     pub(crate) waiting: Option<Waiting>,
     pub(crate) in_cycle: Option<CycleOrigin>,
+    /// The figure on the cylinder that is roughed.
+    pub(crate) cylinder_roughing: Option<Box<CylinderRoughing>>,
     pub(crate) capture: Option<Capture>,
     /// Elements that wait for a later block.
     pub(crate) corner: Option<OpenPath>,
@@ -345,6 +348,7 @@ impl Interpreter {
             active: None,
             waiting: None,
             in_cycle: None,
+            cylinder_roughing: None,
             capture: None,
             corner: None,
             compensation: None,

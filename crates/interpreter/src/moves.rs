@@ -128,6 +128,19 @@ impl Core {
     #[inline]
     pub(crate) fn origin(&self) -> Origin {
         let finishing = self.in_cycle.is_some();
+        if finishing && let Some(roughing) = &self.cylinder_roughing {
+            let is_figure =
+                self.in_cycle.is_some_and(|cycle| matches!(cycle.phase, Phase::Cut | Phase::Finish));
+            return Origin {
+                source: roughing.at.source.0,
+                figure_line: is_figure.then_some(self.at.line),
+                sequence: roughing.at.sequence,
+                program: self.program,
+                depth: self.depth(),
+                cycle: self.in_cycle,
+                ..Origin::line(roughing.at.line)
+            };
+        }
         if finishing
             && let Some(frame) = self.frames.last()
             && let FrameKind::Finish { at, .. } = &frame.kind

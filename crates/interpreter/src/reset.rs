@@ -131,6 +131,7 @@ impl Core {
     fn drop_work(&mut self) {
         self.active = None;
         self.in_cycle = None;
+        self.cylinder_roughing = None;
         self.capture = None;
         self.corner = None;
         self.waiting = None;

@@ -5,9 +5,10 @@ mod support;
 use support::{Conditions, Run, run_on};
 use turnwright_control::Control;
 use turnwright_control::policy::{
-    CycleForm, FeedPerRevolution, FinishingFigure, GrooveWithoutPeck, MissingPoint, NestedComment,
-    OneShotWithMotion, PeckModeWord, Policies, RepeatedAddress, RunOutLengthAlone, SingleCycleSide,
-    SpeedLimitAtReset, StoppingCodes,
+    CycleForm, CylinderRoughing, CylinderRoughingSign, CylinderRoughingTotal, CylinderRoughingWords,
+    FeedPerRevolution, FinishingFigure, GrooveWithoutPeck, MissingPoint, NestedComment, OneShotWithMotion,
+    PeckModeWord, Policies, RepeatedAddress, RunOutLengthAlone, SingleCycleSide, SpeedLimitAtReset,
+    StoppingCodes,
 };
 
 fn run_with(text: &str, restarts: u32, change: impl FnOnce(&mut Policies)) -> Run {
@@ -193,4 +194,45 @@ fn the_word_for_the_way_of_pecking_may_be_the_other_way_round() {
     control.policies.peck_mode_word = PeckModeWord::OneIsShort;
     let run = run_on(control, text.as_bytes(), &Conditions::on("gsk-980tdi"));
     assert!(run.listing().contains("rapid d0 z-2  G83 back 1\nfeed d0 z-5"), "{}", run.listing());
+}
+
+/// Surface, levels, last pass and level of the start, diameters, of roughing a cylinder from X40.
+fn cylinder_levels(words: &str, change: impl FnOnce(&mut Policies)) -> Vec<String> {
+    let mut control = Control::load("gsk-980tdi").expect("a control");
+    change(&mut control.policies);
+    let conditions =
+        Conditions { setup: "machine = \"turn-mill\"\n".to_string(), ..Conditions::on("gsk-980tdi") };
+    let text = format!("G98 G01 X40 Z0 F100\nG07.1 C20 {words}\nZ-5\nG07.1 C0\nM30\n");
+    let listing = run_on(control, text.as_bytes(), &conditions).listing();
+    let moves = listing.lines().filter(|line| line.contains("approach") || line.contains("infeed"));
+    moves.filter_map(|line| line.split_whitespace().nth(1)).map(str::to_string).collect()
+}
+
+#[test]
+fn roughing_on_a_cylinder_may_be_read_in_other_ways() {
+    let words = "J-2 K0.2 R1 L2";
+    assert_eq!(cylinder_levels(words, |_| {}), ["d46.2", "d42.2", "d40.2", "d40"]);
+    let levels = |change: fn(&mut Policies)| cylinder_levels(words, change);
+    let surface = levels(|policies| policies.cylinder_roughing = CylinderRoughing::SurfaceAtStart);
+    assert_eq!(surface, ["d42", "d38", "d36", "d35.8"]);
+    let radii = levels(|policies| policies.cylinder_roughing_words = CylinderRoughingWords::Radii);
+    assert_eq!(radii, ["d46.4", "d42.4", "d40.4", "d40"]);
+    let diameters = levels(|policies| policies.cylinder_roughing_words = CylinderRoughingWords::Diameters);
+    assert_eq!(diameters, ["d43.2", "d41.2", "d40.2", "d40"]);
+    let total = levels(|policies| policies.cylinder_roughing_total = CylinderRoughingTotal::WithAllowance);
+    assert_eq!(total, ["d46", "d42.1", "d40.2", "d40"]);
+    let way_out = |policies: &mut Policies| policies.cylinder_roughing_sign = CylinderRoughingSign::WayOut;
+    assert_eq!(cylinder_levels("J2 K0.2 R1 L2", way_out), ["d46.2", "d42.2", "d40.2", "d40"]);
+    assert_eq!(cylinder_levels(words, way_out), ["d33.8", "d37.8", "d39.8", "d40"]);
+}
+
+#[test]
+fn an_allowance_may_leave_nothing_to_rough_on_a_cylinder() {
+    let mut control = Control::load("gsk-980tdi").expect("a control");
+    control.policies.cylinder_roughing_total = CylinderRoughingTotal::WithAllowance;
+    let conditions =
+        Conditions { setup: "machine = \"turn-mill\"\n".to_string(), ..Conditions::on("gsk-980tdi") };
+    let text = b"G98 G01 X40 Z0 F100\nG07.1 C20 J-2 K4 R1 L2\nZ-5\nG07.1 C0\nM30\n";
+    let run = run_on(control, text, &conditions);
+    assert_eq!(run.alarm.expect("an alarm").key, "cylinder-roughing-zero");
 }

@@ -5,7 +5,7 @@
 //! `G06.2 X(U)_ Z(W)_ A_ B_ Q_ F_`: A is the half axis along the angle Q from +Z, B the other one, both in mm and
 //! measured as a radius. The part is at most half of the ellipse. A and B alike give an ordinary arc. Zero, missing,
 //! or ends further apart than the ellipse is wide are an alarm. A is meant to be the longer one; where it is not, Q is
-//! still the angle of A.
+//! still the angle of A. Without X and Z the block does nothing, with a warning.
 //!
 //! `G07.2 X(U)_ Z(W)_ P_ Q_ F_`: the parabola y² = 2·P·x through both ends, its axis at the angle Q from +Z. It opens
 //! to the side that gives the turn asked for, so P has no sign. P zero or missing, or ends on a parallel to the axis,
@@ -34,11 +34,13 @@ const TURN: i64 = 360_000;
 pub(super) static ELLIPSE_CLOCKWISE: Function =
     Function::motion("ellipse-clockwise", |core, call| ellipse(core, call, Turn::Clockwise))
         .with_letters(b"ABQ")
+        .triggered_by(b"AB")
         .allowed_in_figure();
 
 pub(super) static ELLIPSE_COUNTER_CLOCKWISE: Function =
     Function::motion("ellipse-counter-clockwise", |core, call| ellipse(core, call, Turn::CounterClockwise))
         .with_letters(b"ABQ")
+        .triggered_by(b"AB")
         .allowed_in_figure();
 
 pub(super) static PARABOLA_CLOCKWISE: Function =
@@ -61,6 +63,10 @@ struct Cut {
 }
 
 fn ellipse(core: &mut Core, call: &mut Call<'_>, turn: Turn) -> Result<(), Alarm> {
+    if call.block.present() & super::AXES == 0 {
+        core.warn_block("ellipse-without-end");
+        return Ok(());
+    }
     let Cut { from, to, feed, tilt_millidegrees } = core.curve_words(call, "ellipse-illegal")?;
     let half_along = core.half_axis(call, b'A')?;
     let half_across = core.half_axis(call, b'B')?;

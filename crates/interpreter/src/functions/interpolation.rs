@@ -12,7 +12,8 @@
 //!
 //! **Cylindrical**: `G07.1 C_` gives the radius of a cylinder about Z; C moves are degrees as ever (or, with `K1`
 //! where the control has it, millimetres on the surface), but run along the unrolled surface: F is the speed
-//! there, and arcs of Z and C are arcs on it, by R only. `G07.1 C0` ends the mode.
+//! there, and arcs of Z and C are arcs on it, by R only. `G07.1 C0` ends the mode. Where the control has the words
+//! J K R L, the blocks between are a figure that is roughed in passes ([`cylinder_roughing`](super::cylinder_roughing)).
 //!
 //! Both begin alone in their blocks, without nose compensation, and in feed per minute where the control insists
 //! on it. Cancelling what is not on does nothing.
@@ -20,7 +21,7 @@
 //! Source: polar and cylindrical interpolation of both families.
 
 use turnwright_canon::{Action, Interpolation};
-use turnwright_control::policy::{CylinderLengths, InterpolationFeed, PolarRapid};
+use turnwright_control::policy::{CylinderLengths, InterpolationFeed, PolarRapid, PolarTool};
 use turnwright_syntax::{Block, Word};
 use turnwright_units::Radius;
 
@@ -38,7 +39,7 @@ pub(super) static POLAR_WORDS_ON: Function =
 pub(super) static POLAR_WORDS_OFF: Function =
     Function::mode("polar-words-off", |core, call| polar_words(core, call, false));
 pub(super) static CYLINDRICAL: Function =
-    Function::one_shot("cylindrical-interpolation", cylindrical).with_letters(b"CHBYKR");
+    Function::one_shot("cylindrical-interpolation", cylindrical).with_letters(b"CHBYKRJL");
 
 /// Functions that work in both kinds of virtual plane.
 const IN_VIRTUAL_PLANES: &[&str] = &[
@@ -80,6 +81,7 @@ fn polar_off(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
         return Ok(());
     }
     core.stands_alone(call, 0, "interpolation-not-alone")?;
+    core.refuse_end_in_compensation(call)?;
     core.leave_virtual_plane();
     Ok(())
 }
@@ -89,13 +91,17 @@ fn polar_words(core: &mut Core, call: &mut Call<'_>, are_polar: bool) -> Result<
     if are_polar && !is_polar {
         return Err(core.alarm_at("polar-words-outside", call.word));
     }
+    if is_polar {
+        core.stands_alone(call, 0, "interpolation-not-alone")?;
+    }
     core.axes.polar_words = are_polar;
     Ok(())
 }
 
 fn cylindrical(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     let block = call.block;
-    core.refuse_cylinder_words(block)?;
+    let may_unroll = core.control.policies.cylinder_lengths == CylinderLengths::ByWord;
+    core.refuse_cylinder_words(block, may_unroll)?;
     core.stands_alone(call, CYLINDRICAL.letters, "interpolation-not-alone")?;
     let has_axis = core.axes.machine.c.is_some() && !core.axes.is_spindle;
     let foreign = [b'B', b'Y'].into_iter().find_map(|letter| block.word(letter));
@@ -111,7 +117,10 @@ fn cylindrical(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     let is_on = matches!(core.axes.interpolation, Interpolation::Cylindrical { .. });
     if radius.is_zero() {
         if is_on {
-            core.leave_virtual_plane();
+            core.refuse_end_in_compensation(call)?;
+            if !core.end_cylinder_pass(call)? {
+                core.leave_virtual_plane();
+            }
         }
         return Ok(());
     }
@@ -119,13 +128,17 @@ fn cylindrical(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
         return Err(core.alarm_at("cylindrical-code-illegal", call.word));
     }
     core.may_start_interpolation(call)?;
-    let unrolled_words = match block.word(b'K') {
+    let unrolled_words = match block.word(b'K').filter(|_| may_unroll) {
         None => false,
         Some(word) => core.whole(word, 1)? == 1,
     };
+    let levels = if may_unroll { None } else { core.cylinder_levels(call)? };
     core.begin_interpolation(Interpolation::Cylindrical { radius: Radius(radius) });
     core.axes.unrolled_words = unrolled_words;
-    Ok(())
+    match levels {
+        Some(levels) => core.begin_cylinder_roughing(call, levels),
+        None => Ok(()),
+    }
 }
 
 impl Core {
@@ -144,18 +157,10 @@ impl Core {
         Ok(())
     }
 
-    /// Words of the block that the control, or this version, does not take.
-    fn refuse_cylinder_words(&self, block: &Block) -> Result<(), Alarm> {
-        for letter in [b'K', b'R'] {
-            let Some(word) = block.word(letter) else { continue };
-            if self.control.words_for_later(CYLINDRICAL.name).as_bytes().contains(&letter) {
-                return Err(self.not_supported(CYLINDRICAL.name, word));
-            }
-            let is_known =
-                letter == b'K' && self.control.policies.cylinder_lengths == CylinderLengths::ByWord;
-            if !is_known {
-                return Err(self.alarm("illegal-address", word));
-            }
+    /// Nose compensation that began in the mode ends in it.
+    fn refuse_end_in_compensation(&self, call: &Call<'_>) -> Result<(), Alarm> {
+        if self.is_compensating() {
+            return Err(self.alarm_at("interpolation-end-in-compensation", call.word));
         }
         Ok(())
     }
@@ -182,6 +187,12 @@ impl Core {
             Interpolation::Polar { .. } => ("polar-code-illegal", IN_POLAR_ONLY),
             Interpolation::Cylindrical { .. } => ("cylindrical-code-illegal", IN_CYLINDRICAL_ONLY),
         };
+        if let Some(word) = block.word(b'T')
+            && matches!(self.axes.interpolation, Interpolation::Polar { .. })
+            && self.control.policies.polar_tool == PolarTool::Alarm
+        {
+            return Err(self.alarm("polar-tool-word", word));
+        }
         let rapid = key == "polar-code-illegal" && self.control.policies.polar_rapid == PolarRapid::Allowed;
         let is_allowed = |name: &str| {
             IN_VIRTUAL_PLANES.contains(&name) || only.contains(&name) || (name == "rapid" && rapid)

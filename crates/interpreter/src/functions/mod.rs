@@ -9,6 +9,7 @@ mod arc;
 mod arc_thread;
 mod conic;
 mod coordinate_setting;
+pub(crate) mod cylinder_roughing;
 mod data_setting;
 mod dwell;
 mod finishing;

@@ -21,6 +21,7 @@
 
 use turnwright_control::policy::{NegativeNoseRadius, RoughingCompensation};
 use turnwright_geometry::{Side, Vector};
+use turnwright_syntax::Word;
 
 use super::Function;
 use crate::axes::Plane;
@@ -54,6 +55,11 @@ fn start(core: &mut Core, call: &mut Call<'_>, side: Side) -> Result<(), Alarm> 
     if let Some(word) = call.word
         && (core.axes.is_virtual() || core.axes.plane != Plane::Zx)
     {
+        if core.nose().radius.is_zero() {
+            // A nose without a radius is nowhere else than its path.
+            core.warn("compensation-without-radius", word);
+            return Ok(());
+        }
         return Err(core.not_supported("nose-compensation-left", word));
     }
     if !core.settings.compensation.is_available {
@@ -92,6 +98,15 @@ fn end(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
 }
 
 impl Core {
+    /// A tool with a nose radius where compensation is on outside the turning plane: it would have to act there.
+    pub(crate) fn refuse_nose_outside_plane(&self, word: &Word) -> Result<(), Alarm> {
+        let is_outside = self.axes.is_virtual() || self.axes.plane != Plane::Zx;
+        if is_outside && self.is_compensating() && !self.nose().radius.is_zero() {
+            return Err(self.not_supported("nose-compensation-left", word));
+        }
+        Ok(())
+    }
+
     /// Nose compensation is on: its group holds another code than at power-on.
     pub(crate) fn is_compensating(&self) -> bool {
         let in_force = self.modal.in_force.codes[COMPENSATION_GROUP];
