@@ -47,7 +47,7 @@ pub use setup_comment::setup_comment;
 pub use setup_text::setup_key_words;
 pub use signal::Signal;
 pub use suggest::nearest;
-pub use tooling::{Hand, Tool, ToolEntry, ToolKind, ToolPost, ToolSide};
+pub use tooling::{Flank, Hand, Tool, ToolEntry, ToolKind, ToolPost, ToolSide};
 pub use workholding::{Chuck, ChuckOutlines, Grip, Tailstock};
 
 pub(crate) mod embedded {

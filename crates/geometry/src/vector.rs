@@ -38,7 +38,8 @@ impl Vector {
         Self { x: self.z, z: -self.x }
     }
 
-    pub(crate) fn dot(self, other: Self) -> f64 {
+    /// Positive when `other` points the same way.
+    pub fn dot(self, other: Self) -> f64 {
         self.x * other.x + self.z * other.z
     }
 

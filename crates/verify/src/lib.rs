@@ -12,6 +12,7 @@ pub mod changes;
 mod checks;
 pub mod comparison;
 pub mod cutting;
+mod edges;
 mod inference;
 pub mod measuring;
 pub mod part;

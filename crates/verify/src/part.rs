@@ -5,13 +5,15 @@
 //! obstacle) and the tool; a warning where tool or obstacle were inferred, for the fault may lie in the guess. Where
 //! the stock itself was inferred nothing is told of crashes: a bar that is assumed too thick is hit by sound programs.
 //! A rapid that only drags along the wall that was just cut is a warning.
-//! Of tools that were inferred only what cuts is looked at: nobody said which holder it is.
+//! Of tools that were inferred only what cuts is looked at: nobody said which holder it is. Edges that cut where they should
+//! not (`edges.rs`) are looked at where stock and tool are given.
 //!
 //! Invariant: what is kept is bounded; a program that is too long for [`PART_MOVES_MAX`] or a section that is too fine
 //! for [`SLABS_MAX`] ends the machining, never the run, and says so.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::edges::{Edges, Fault};
 use turnwright_canon::{Action, Command, Origin};
 use turnwright_control::{Setup, SetupFault};
 use turnwright_diagnostics::{Diagnostic, Place, Severity, SourceId};
@@ -46,6 +48,7 @@ pub struct PartRun {
     commands: u64,
     is_full: bool,
     notebook: Notebook,
+    edges: Edges,
     history: Option<History>,
     tools: BTreeMap<u32, ToolShape>,
     obstacles: Vec<(Obstacle, Outline)>,
@@ -129,8 +132,11 @@ impl PartRun {
             tools: given.tools.keys().filter_map(|name| name.parse().ok()).collect(),
             ..Notebook::default()
         };
-        let mut tools = BTreeMap::new();
+        let (mut tools, mut edges) = (BTreeMap::new(), Edges::default());
         for (station, tool) in setup.tools()? {
+            if notebook.has_stock && notebook.tools.contains(&station) {
+                edges.watch(station, &tool);
+            }
             let body = tool.body.filter(|_| notebook.tools.contains(&station));
             tools.insert(station, ToolShape { cutting: tool.cutting, body });
         }
@@ -155,6 +161,7 @@ impl PartRun {
             commands: 0,
             is_full: false,
             notebook,
+            edges,
             history: None,
             tools,
             obstacles,
@@ -181,8 +188,13 @@ impl PartRun {
             Action::Tool { tool, .. } => self.notebook.tool = tool,
             _ => {}
         }
-        let Self { machining, notebook, history, commands, .. } = self;
+        let Self { machining, notebook, edges, history, commands, .. } = self;
+        let from = machining.at();
         let removed = machining.advance(command, &mut |event| notebook.tell(&event, *commands));
+        if !edges.is_idle() {
+            let ends = (from, machining.at());
+            edges.add((command, *commands), notebook.tool, ends, &removed, machining.section());
+        }
         if let Some(history) = history {
             history.add(*commands, &removed, machining.section());
             if let Some(piece) = machining.take_fallen() {
@@ -224,6 +236,8 @@ impl PartRun {
         if let Some(history) = &mut self.history {
             history.finish(self.machining.section());
         }
+        let faults = self.edges.finish(self.machining.section(), self.machining.part());
+        faults.iter().for_each(|fault| self.notebook.tell_fault(fault));
         Part {
             section: self.machining.part().clone(),
             plain: self.plain.as_deref().unwrap_or(&self.machining).part().clone(),
@@ -267,29 +281,60 @@ impl Notebook {
         if is_of_stock && !self.has_stock {
             return;
         }
-        let told = self.told.entry(key).or_default();
-        if told.len() >= FINDINGS_MAX || !told.insert((event.origin.source, event.origin.line)) {
-            return;
-        }
-        let Point { x, z } = event.place;
         let contact = event.contact.as_ref();
-        self.marks.push(Mark {
+        let mark = Mark {
             key,
             line: (SourceId(event.origin.source), event.origin.line),
             command,
             place: event.place,
             depth_mm: contact.map_or(0.0, |contact| contact.depth_mm),
             bounds: contact.map(|contact| contact.bounds),
-        });
+        };
+        let depth = contact.map_or_else(String::new, |contact| millimetres(contact.depth_mm));
+        if let Some(finding) = self.note(severity, mark, self.tool, &event.origin) {
+            let value = contact.map_or_else(String::new, size);
+            *finding = finding.clone().with("depth", depth).with("value", value);
+        }
+    }
+
+    /// What an edge did that it should not.
+    fn tell_fault(&mut self, fault: &Fault) {
+        let Fault { key, tool, origin, command, place, depth_mm, bounds, angles_deg } = *fault;
+        let line = (SourceId(origin.source), origin.line);
+        let mark = Mark { key, line, command, place, depth_mm, bounds: Some(bounds) };
+        if let Some(finding) = self.note(Severity::Warning, mark, tool, &origin) {
+            let (angle, limit) = angles_deg.unwrap_or_default();
+            let degrees = |angle: f64| ((angle * 10.0).round() / 10.0).to_string();
+            *finding = finding
+                .clone()
+                .with("depth", millimetres(depth_mm))
+                .with("angle", degrees(angle))
+                .with("limit", degrees(limit));
+        }
+    }
+
+    /// A finding with its mark; nothing when it was told of this line, or often enough.
+    fn note(
+        &mut self,
+        severity: Severity,
+        mark: Mark,
+        tool: u32,
+        origin: &Origin,
+    ) -> Option<&mut Diagnostic> {
+        let told = self.told.entry(mark.key).or_default();
+        if told.len() >= FINDINGS_MAX || !told.insert((origin.source, origin.line)) {
+            return None;
+        }
+        let Point { x, z } = mark.place;
+        self.marks.push(mark);
         self.findings.push(
-            Diagnostic::new(severity, key)
-                .at(place_of(&event.origin))
-                .with("tool", i64::from(self.tool))
+            Diagnostic::new(severity, mark.key)
+                .at(place_of(origin))
+                .with("tool", i64::from(tool))
                 .with("x", millimetres(2.0 * x))
-                .with("z", millimetres(z))
-                .with("depth", contact.map_or_else(String::new, |contact| millimetres(contact.depth_mm)))
-                .with("value", contact.map_or_else(String::new, size)),
+                .with("z", millimetres(z)),
         );
+        self.findings.last_mut()
     }
 }
 

@@ -7,7 +7,7 @@ mod designation;
 mod shape;
 
 use serde::Deserialize;
-use turnwright_geometry::{Outline, OutlineFault};
+use turnwright_geometry::{Outline, OutlineFault, Point, Vector};
 
 use self::designation::{Holder, Insert, TurningInsert};
 use self::shape::Stance;
@@ -169,6 +169,33 @@ pub struct Tool {
     pub cutting: Outline,
     /// What must not touch the work.
     pub body: Option<Outline>,
+    /// The edges behind the nose of a turning insert; none where nobody says how it stands in its holder.
+    pub flanks: Vec<Flank>,
+}
+
+/// An edge behind the nose of a turning insert: it must be clear of the work that stays. Neutral tools have two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flank {
+    /// Where it leaves the nose, from the programmed point.
+    pub near: Point,
+    /// Where it ends.
+    pub far: Point,
+    /// Away from the insert, one long.
+    pub outward: Vector,
+}
+
+impl Flank {
+    /// The way along it, away from the nose, one long.
+    pub fn way(&self) -> Vector {
+        let way = Vector::between(self.near, self.far);
+        way.times(1.0 / way.length())
+    }
+
+    /// How far it leans off the spindle axis, degrees: the steepest way in that it leaves clear.
+    pub fn clear_deg(&self) -> f64 {
+        let way = self.way();
+        libm::atan2(way.x.abs(), way.z.abs()).to_degrees()
+    }
 }
 
 /// What no tool can be: the key that is wrong, and why.
@@ -266,6 +293,7 @@ impl ToolEntry {
         };
         let drawing = Drawing { entry: self, kind, side, nose_mm, stance, insert, holder };
         let (cutting, body) = drawing.outlines()?;
+        let flanks = drawing.flanks();
         let width_mm = match kind {
             ToolKind::Drilling | ToolKind::Tapping => self.diameter_mm,
             ToolKind::Grooving | ToolKind::CutOff => drawing.width_mm(),
@@ -284,6 +312,7 @@ impl ToolEntry {
             thread_angle_deg,
             cutting,
             body,
+            flanks,
         })
     }
 
@@ -401,16 +430,38 @@ impl Drawing<'_> {
         (self.entry.shank_mm.unwrap_or(shank), self.entry.length_mm.unwrap_or(length))
     }
 
-    fn turning(&self, insert: &TurningInsert) -> Result<(Outline, Option<Outline>), ToolFault> {
-        let angle_deg = insert.angle_deg;
+    /// The entering angle that the entry or the holder gives.
+    fn given_entering_angle_deg(&self, insert: &TurningInsert) -> Option<f64> {
         let of_holder = self.holder.as_ref().map(|holder| {
             // The edge that leads when feeding across is the one that trails along Z.
             if holder.faces {
-                270.0 - holder.entering_angle_deg - angle_deg
+                270.0 - holder.entering_angle_deg - insert.angle_deg
             } else {
                 holder.entering_angle_deg
             }
         });
+        self.entry.entering_angle_deg.or(of_holder)
+    }
+
+    /// Whether it feeds both ways along Z.
+    fn is_neutral(&self) -> bool {
+        self.holder.as_ref().map_or(self.stance.tip.1 == 0, |holder| holder.is_neutral)
+    }
+
+    /// The edges behind the nose, where a designation and an angle say where they are.
+    fn flanks(&self) -> Vec<Flank> {
+        let is_drawn = self.entry.outline.is_empty() && self.side != ToolSide::Face;
+        let (Some(Insert::Turning(insert)), true) = (&self.insert, is_drawn) else { return Vec::new() };
+        let Some(entering_angle_deg) = self.given_entering_angle_deg(insert) else { return Vec::new() };
+        if insert.is_round() {
+            return Vec::new();
+        }
+        let flank = |trails| shape::flank(insert, entering_angle_deg, self.nose_mm, self.stance, trails);
+        if self.is_neutral() { vec![flank(true), flank(false)] } else { vec![flank(true)] }
+    }
+
+    fn turning(&self, insert: &TurningInsert) -> Result<(Outline, Option<Outline>), ToolFault> {
+        let angle_deg = insert.angle_deg;
         let usual = if angle_deg > 85.0 {
             75.0
         } else if angle_deg > 60.0 {
@@ -418,7 +469,7 @@ impl Drawing<'_> {
         } else {
             93.0
         };
-        let entering_angle_deg = self.entry.entering_angle_deg.or(of_holder).unwrap_or(usual);
+        let entering_angle_deg = self.given_entering_angle_deg(insert).unwrap_or(usual);
         if entering_angle_deg + angle_deg > 180.0 + 1e-9 {
             let why = format!(
                 "an edge at {entering_angle_deg} degrees and a corner of {angle_deg} leave nothing behind the nose"
@@ -432,11 +483,10 @@ impl Drawing<'_> {
         let cutting = shape::insert(insert, entering_angle_deg, self.nose_mm, self.stance);
         let cutting = cutting.map_err(no_outline("insert"))?;
         let (shank_mm, length_mm) = self.shank();
-        let is_neutral = self.holder.as_ref().map_or(self.stance.tip.1 == 0, |holder| holder.is_neutral);
         let holder = Holder {
             entering_angle_deg,
             faces: false,
-            is_neutral,
+            is_neutral: self.is_neutral(),
             is_left: self.stance.is_left,
             is_inside: self.side == ToolSide::Inside,
             shank_mm,
@@ -519,8 +569,6 @@ pub(crate) fn is_holder(word: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use turnwright_geometry::Point;
-
     use super::*;
 
     fn entry(text: &str) -> ToolEntry {
@@ -604,6 +652,36 @@ mod tests {
         let lean = libm::tan(5_f64.to_radians());
         assert!(!at(10.0, 10.0 * lean - 0.01) && at(10.0, 10.0 * lean + 0.01));
         assert!(!at(10.0 * lean - 0.01, 10.0) && at(10.0 * lean + 0.01, 10.0));
+    }
+
+    #[test]
+    fn the_edge_behind_the_nose_is_known_when_the_holder_is() {
+        // 95 + 80 degrees leave 5, 93 + 55 leave 32; outside, inside and towards the other end.
+        for (text, clear_deg, way) in [
+            ("insert = \"CNMG120408\"\nholder = \"PCLNR2525M12\"\n", 5.0, (1, 1)),
+            ("insert = \"DNMG150608\"\nholder = \"PDJNR2525M15\"\n", 32.0, (1, 1)),
+            ("insert = \"DNMG150608\"\nholder = \"PDJNL2525M15\"\n", 32.0, (1, -1)),
+            ("insert = \"DCMT11T304\"\nholder = \"S20R-SDUCR11\"\n", 32.0, (-1, 1)),
+            ("insert = \"VBMT160404\"\nentering_angle_deg = 93\n", 52.0, (1, 1)),
+        ] {
+            let tool = tool(text);
+            let [flank] = tool.flanks[..] else { panic!("{text}: {:?}", tool.flanks) };
+            assert!((flank.clear_deg() - clear_deg).abs() < 1e-9, "{text}: {}", flank.clear_deg());
+            let along = flank.way();
+            assert_eq!((along.x.signum(), along.z.signum()), (f64::from(way.0), f64::from(way.1)), "{text}");
+            // On the outline: just inside is the insert, just outside is not, half way along it.
+            let middle = along.times(0.5 * flank.near.distance(flank.far)).from(flank.near);
+            assert!(tool.cutting.contains(flank.outward.times(-1e-6).from(middle)), "{text}");
+            assert!(!tool.cutting.contains(flank.outward.times(1e-6).from(middle)), "{text}");
+        }
+        assert_eq!(tool("insert = \"VBMT160404\"\nholder = \"SVVBN2525M16\"").flanks.len(), 2);
+        for text in [
+            "insert = \"CNMG120408\"\n",
+            "insert = \"RCMT1204M0\"\nentering_angle_deg = 75\n",
+            "kind = \"grooving\"\nwidth_mm = 3\n",
+        ] {
+            assert_eq!(tool(text).flanks, [], "{text}");
+        }
     }
 
     #[test]

@@ -5,6 +5,7 @@
 
 use turnwright_geometry::{Outline, OutlineFault, Point, Vector};
 
+use super::Flank;
 use super::designation::{Form, Holder, TurningInsert, reach_mm};
 use crate::outline::rounded;
 
@@ -50,6 +51,11 @@ impl Stance {
         let x = if self.is_above { -x } else { x };
         let z = if self.is_left { -z } else { z };
         Point::new(x * radius_mm, z * radius_mm)
+    }
+
+    /// A place or a way of the drawing as the tool stands; for tools that do not feed into a face.
+    fn turned(self, x: f64, z: f64) -> (f64, f64) {
+        (if self.is_above { -x } else { x }, if self.is_left { -z } else { z })
     }
 
     /// A drawing as the tool stands.
@@ -125,6 +131,29 @@ pub(super) fn insert(
     };
     let corners: Vec<_> = corners.into_iter().map(|corner| (corner, nose_mm)).collect();
     rounded(&corners).map(|drawing| stance.placed(drawing))
+}
+
+/// One of the two edges that touch the nose: the minor one, which trails, or the major one, which leads.
+pub(super) fn flank(
+    insert: &TurningInsert,
+    entering_angle_deg: f64,
+    nose_mm: f64,
+    stance: Stance,
+    trails: bool,
+) -> Flank {
+    let centre = stance.centre(nose_mm);
+    let way = edge(if trails { entering_angle_deg + insert.angle_deg } else { entering_angle_deg });
+    // A quarter turn off the edge, away from the insert.
+    let outward = if trails { Vector { x: -way.z, z: way.x } } else { Vector { x: way.z, z: -way.x } };
+    let near = outward.times(nose_mm).from(centre);
+    let apex = apex(centre, nose_mm, insert.angle_deg, entering_angle_deg);
+    let far = way.times(HEAD_PART * insert.edge_mm()).from(apex);
+    let place = |at: Point| {
+        let (x, z) = stance.turned(at.x, at.z);
+        Point { x, z }
+    };
+    let (x, z) = stance.turned(outward.x, outward.z);
+    Flank { near: place(near), far: place(far), outward: Vector { x, z } }
 }
 
 /// Where the two edges that touch the nose would meet.

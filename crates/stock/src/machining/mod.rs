@@ -22,7 +22,7 @@ mod ways;
 
 use std::collections::BTreeMap;
 
-use turnwright_canon::{Action, Command, Interpolation, Origin, SectionPlace, SpindleState};
+use turnwright_canon::{Action, Command, Interpolation, Origin, SectionPlace, Shape, SpindleState};
 use turnwright_geometry::{Outline, Point, Segment};
 use turnwright_units::{Position, WorkTip};
 
@@ -125,6 +125,11 @@ impl Machining {
     pub fn add_obstacle(&mut self, obstacle: Obstacle, outline: &Outline) -> Result<(), SectionFault> {
         self.obstacles.push((obstacle, Section::new(outline)?));
         Ok(())
+    }
+
+    /// Where the tool's programmed point is.
+    pub const fn at(&self) -> Position<WorkTip> {
+        self.at
     }
 
     /// What is left.
@@ -355,6 +360,15 @@ impl Machining {
             self.fallen = Some(fallen);
         }
     }
+}
+
+/// The lines and arcs of a cutting move in the half-section; nothing for what is no turning.
+pub fn cutting_ways(
+    from: Position<WorkTip>,
+    to: Position<WorkTip>,
+    shape: &Shape,
+) -> impl Iterator<Item = Segment> {
+    ways::is_in_section(shape).then(|| ways(from, to, shape)).into_iter().flatten()
 }
 
 /// Puts the origin to events, and tells of each kind once in a row: where on the ways of a command it begins.

@@ -1,4 +1,5 @@
-//! **Steps wider than the blade.** A grooving cycle goes on to its next column by more than the width of the tool.
+//! **Steps wider than the blade.** A grooving cycle goes on to its next column by more than the width of the tool, and by less than
+//! two of them: what is as wide as the blade is a land between two grooves.
 //!
 //! Why it hurts: ribs remain between the plunges.
 //!
@@ -40,7 +41,8 @@ impl Check for GrooveStep {
         for (station, step, origin) in &self.steps {
             let Some(tool) = scene.tools.get(station) else { continue };
             let is_blade = matches!(tool.kind, ToolKind::Grooving | ToolKind::CutOff);
-            if is_blade && tool.width_mm.is_some_and(|width| *step > width + 1e-6) {
+            let is_rib = |width: f64| *step > width + 1e-6 && *step < 2.0 * width;
+            if is_blade && tool.width_mm.is_some_and(is_rib) {
                 report.warn("groove-step-wider-than-tool", origin, vec![("tool", Argument::from(*station))]);
             }
         }
