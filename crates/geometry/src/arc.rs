@@ -28,7 +28,7 @@ pub fn centre_from_radius(
     tolerance_mm: f64,
 ) -> Result<Point, ArcFault> {
     let (dz, dx) = (end.z - start.z, end.x - start.x);
-    let chord = dz.hypot(dx);
+    let chord = start.distance(end);
     if chord == 0.0 {
         return Err(ArcFault::NoChord);
     }

@@ -40,7 +40,10 @@ impl Point {
     }
 
     /// Straight distance to another place, mm.
+    ///
+    /// Lengths of a lathe neither overflow nor vanish when squared, and a square root is the same on every machine.
+    #[inline]
     pub fn distance(self, other: Self) -> f64 {
-        (self.x - other.x).hypot(self.z - other.z)
+        Vector::between(other, self).length()
     }
 }

@@ -13,13 +13,15 @@ pub struct Vector {
 
 impl Vector {
     /// From one place to another.
+    #[inline]
     pub fn between(from: Point, to: Point) -> Self {
         Self { x: to.x - from.x, z: to.z - from.z }
     }
 
     /// How long it is, mm.
+    #[inline]
     pub fn length(self) -> f64 {
-        self.x.hypot(self.z)
+        (self.x * self.x + self.z * self.z).sqrt()
     }
 
     /// With length 1; nothing when it has no length.

@@ -6,7 +6,7 @@
 
 use turnwright_control::policy::{OneShotWithMotion, ProgramZero, SettingBesideSystem};
 use turnwright_diagnostics::Diagnostic;
-use turnwright_syntax::{Block, Word};
+use turnwright_syntax::{Block, Decimal, Word};
 
 use crate::Environment;
 use crate::auxiliary::{Auxiliary, Flow};
@@ -16,7 +16,7 @@ use crate::machine::Core;
 use crate::macros::CallKind;
 use crate::plain::Plain;
 use crate::report::Alarm;
-use crate::words::Role;
+use crate::words::{POWER, Role};
 
 /// What a function's code may look at.
 pub(crate) struct Call<'a> {
@@ -537,22 +537,28 @@ impl Core {
         if place > 0 && block.words[place - 1].address != b'O' {
             self.warn("sequence-not-at-start", word);
         }
-        // Sequence numbers with leading zeros are common; only their value counts.
         let number = self.number(word)?;
-        if number.has_point {
-            return Err(self.alarm("point-not-allowed", word));
-        }
-        if number.digits < 0 {
-            return Err(self.alarm("minus-not-allowed", word));
-        }
-        match u32::try_from(number.digits) {
-            Ok(value) if value < 10u32.pow(u32::from(self.control.limits.sequence_digits)) => {
-                self.at.sequence = Some(value);
-                self.modal.in_force.sequence = Some(value);
-            }
-            _ => return Err(self.alarm("number-too-long", word)),
-        }
+        let Some(value) = self.plain_sequence(number) else {
+            let key = if number.has_point {
+                "point-not-allowed"
+            } else if number.digits < 0 {
+                "minus-not-allowed"
+            } else {
+                "number-too-long"
+            };
+            return Err(self.alarm(key, word));
+        };
+        self.at.sequence = Some(value);
+        self.modal.in_force.sequence = Some(value);
         Ok(())
+    }
+
+    /// A sequence number that the control takes. Leading zeros are common; only the value counts.
+    #[inline]
+    pub(crate) fn plain_sequence(&self, number: Decimal) -> Option<u32> {
+        let limit = POWER[usize::from(self.control.limits.sequence_digits.min(9))];
+        let is_whole = !number.has_point && (0..limit).contains(&number.digits);
+        is_whole.then_some(number.digits as u32)
     }
 
     fn program_number(&mut self, word: &Word, auxiliary: &Auxiliary) -> Result<(), Alarm> {

@@ -110,7 +110,7 @@ impl Core {
 
     /// Whether the control can hold a place: X as a diameter.
     #[inline]
-    fn is_in_range(&self, to: Position<WorkTip>) -> bool {
+    pub(crate) fn is_in_range(&self, to: Position<WorkTip>) -> bool {
         let limit = self.settings.length_limit_nm;
         to.x.to_diameter().0.abs().nm() < limit && to.z.abs().nm() < limit
     }

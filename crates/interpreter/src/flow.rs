@@ -76,6 +76,7 @@ pub(crate) struct MacroFrame {
 
 impl Core {
     /// Call depth of subprograms.
+    #[inline]
     pub(crate) fn depth(&self) -> u8 {
         if self.frames.is_empty() { 0 } else { self.call_depths().0 + self.call_depths().1 }
     }

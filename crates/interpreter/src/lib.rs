@@ -45,6 +45,7 @@ mod queue;
 mod reading;
 mod report;
 mod reset;
+mod short;
 mod spindle;
 mod strokes;
 mod text;

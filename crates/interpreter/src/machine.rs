@@ -6,7 +6,7 @@ use turnwright_canon::{Command, CycleOrigin, OtherAxes, PathMode};
 use turnwright_control::{Control, Mode, Parameters, Setup, SetupFault, ThreadRecord};
 use turnwright_cycles::Element;
 use turnwright_diagnostics::{Diagnostic, Place, SourceId};
-use turnwright_syntax::Block;
+use turnwright_syntax::{Block, ShortLine};
 use turnwright_units::{Angle, Displacement, Length, Position, Radius, SurfaceSpeed, WorkTip};
 
 use crate::Environment;
@@ -237,6 +237,7 @@ pub(crate) struct Core {
 pub struct Interpreter {
     pub(crate) core: Core,
     block: Block,
+    line: ShortLine,
     pub(crate) alarm: Option<Alarm>,
 }
 
@@ -388,7 +389,7 @@ impl Interpreter {
         core.modal.offset_in_force = core.offset_called();
         core.start_at_reference();
         core.look_at_moves();
-        Ok(Self { core, block: Block::new(), alarm: None })
+        Ok(Self { core, block: Block::new(), line: ShortLine::default(), alarm: None })
     }
 
     /// Where the tool tip stands.
@@ -441,10 +442,10 @@ impl Interpreter {
     /// Goes on until there is something to say.
     #[inline]
     pub fn step(&mut self, environment: &mut dyn Environment) -> Step {
-        // The moves of a cycle come one behind the other with nothing in between.
+        // The moves of a cycle come one behind the other with nothing in between, and so do those of short lines.
         if self.core.out.is_empty()
             && self.core.sync.is_none()
-            && let Some(command) = self.next_cycle_move()
+            && let Some(command) = self.next_cycle_move().or_else(|| self.next_short_move())
         {
             return Step::Emit(command);
         }
@@ -454,6 +455,17 @@ impl Interpreter {
     #[inline(always)]
     fn next_cycle_move(&mut self) -> Option<Command> {
         let command = self.core.next_cycle_move()?;
+        self.core.idle_blocks = 0;
+        self.core.moves_done = false;
+        Some(command)
+    }
+
+    #[inline(always)]
+    fn next_short_move(&mut self) -> Option<Command> {
+        if self.core.active.is_some() || self.alarm.is_some() {
+            return None;
+        }
+        let command = self.core.next_short_move(&mut self.line)?;
         self.core.idle_blocks = 0;
         self.core.moves_done = false;
         Some(command)

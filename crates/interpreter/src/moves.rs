@@ -8,7 +8,7 @@ use turnwright_cycles::{
     SemiFinished, ThreadOnce, Threading,
 };
 use turnwright_diagnostics::Diagnostic;
-use turnwright_units::{Feed, FeedPerMinute, FeedPerRevolution, Position, WorkTip};
+use turnwright_units::{Feed, FeedPerMinute, FeedPerRevolution, Length, Position, WorkTip};
 
 use crate::flow::FrameKind;
 use crate::limits;
@@ -117,7 +117,15 @@ impl Core {
     /// The feed in force, `None` when there is none or it is zero.
     #[inline]
     pub(crate) fn feed_in_force(&self) -> Option<Feed> {
-        let length = self.modal.feed.filter(|feed| !feed.is_zero())?;
+        self.modal.feed.and_then(|feed| self.feed_of(feed))
+    }
+
+    /// The feed of an F word by the feed mode, `None` when it is zero.
+    #[inline]
+    pub(crate) fn feed_of(&self, length: Length) -> Option<Feed> {
+        if length.is_zero() {
+            return None;
+        }
         Some(match self.modal.feed_mode {
             FeedMode::PerMinute => Feed::PerMinute(FeedPerMinute(length)),
             FeedMode::PerRevolution => Feed::PerRevolution(FeedPerRevolution(length)),
@@ -156,6 +164,14 @@ impl Core {
                 runs_on: false,
             };
         }
+        self.origin_outside_cycles()
+    }
+
+    /// The same where no cycle runs.
+    ///
+    /// Always inline: what is made of it in one place is not carried there.
+    #[inline(always)]
+    pub(crate) fn origin_outside_cycles(&self) -> Origin {
         Origin {
             source: self.at.source.0,
             line: self.at.line,

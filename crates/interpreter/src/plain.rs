@@ -4,7 +4,7 @@
 //! [`block`](crate::block) would make of it; whatever else a block may be or meet goes there. Whether something
 //! in force wants to see every block is asked once, behind a block that could have changed it, and not in each.
 
-use turnwright_syntax::{Block, Value, Word};
+use turnwright_syntax::{Block, Decimal, Value, Word};
 
 use crate::Environment;
 use crate::axes::Plane;
@@ -14,10 +14,10 @@ use crate::machine::Core;
 use crate::report::Alarm;
 
 /// Axis words.
-const AXES: u32 = Block::bit(b'X') | Block::bit(b'Z') | Block::bit(b'U') | Block::bit(b'W');
+pub(crate) const AXES: u32 = Block::bit(b'X') | Block::bit(b'Z') | Block::bit(b'U') | Block::bit(b'W');
 /// Centre and radius of an arc.
-const BEND: u32 = Block::bit(b'I') | Block::bit(b'K') | Block::bit(b'R');
-const PLAIN: u32 = AXES | BEND | Block::bit(b'G') | Block::bit(b'N') | Block::bit(b'F');
+pub(crate) const BEND: u32 = Block::bit(b'I') | Block::bit(b'K') | Block::bit(b'R');
+pub(crate) const PLAIN: u32 = AXES | BEND | Block::bit(b'G') | Block::bit(b'N') | Block::bit(b'F');
 
 /// Whether a block has words that no plain one has.
 #[inline]
@@ -46,7 +46,8 @@ impl Core {
         }
         let code = match block.word(b'G') {
             None => None,
-            Some(word) => Some(self.plain_code(word)?),
+            Some(Word { value: Value::Number(number), .. }) => Some(self.plain_code(*number)?),
+            Some(_) => return None,
         };
         Some(Plain { code })
     }
@@ -62,7 +63,7 @@ impl Core {
         let function = code.map_or(self.modal.motion, |(id, _)| id).get();
         // The words of a kept block may have come to nothing since it was sorted.
         let has_axes = block.present() & AXES != 0;
-        if !has_axes || !function.is_path || (block.present() & BEND != 0 && function.draws_lines) {
+        if !has_axes || function.path.is_none() || (block.present() & BEND != 0 && function.draws_lines) {
             return Ok(false);
         }
         if let Some(place) = block.place(b'N') {
@@ -82,16 +83,12 @@ impl Core {
 
     /// The function of a G word written without sign, point or surplus digits.
     #[inline]
-    fn plain_code(&self, word: &Word) -> Option<(FunctionId, u16)> {
-        match word.value {
-            Value::Number(number)
-                if number.scale == 0 && !number.is_negative && (0..1_000).contains(&number.digits) =>
-            {
-                let code = number.digits as u16 * 10;
-                self.dispatch.function(code).map(|id| (id, code))
-            }
-            _ => None,
+    pub(crate) fn plain_code(&self, number: Decimal) -> Option<(FunctionId, u16)> {
+        if number.scale != 0 || number.is_negative || !(0..1_000).contains(&number.digits) {
+            return None;
         }
+        let code = number.digits as u16 * 10;
+        self.dispatch.function(code).map(|id| (id, code))
     }
 
     /// Whether nothing in force looks at blocks of a path.

@@ -158,14 +158,20 @@ impl Core {
     /// A feed above what the machine cuts with is said once.
     pub(crate) fn check_cutting_speed(&mut self) {
         let Some(feed) = self.feed_in_force().filter(|_| !self.modal.feed_is_lead) else { return };
-        let mm_per_min = match feed {
-            Feed::PerMinute(feed) => feed.0.to_mm(),
-            Feed::PerRevolution(_) if self.modal.spindle == SpindleState::Stop => return,
-            Feed::PerRevolution(feed) => feed.0.to_mm() * f64::from(self.present_rpm().0),
-        };
-        if mm_per_min > self.machine_limits.feed_mm_per_min && !self.is_capturing() {
+        if self.is_above_cutting_speed(feed) && !self.is_capturing() {
             self.warn_once("feed-limited");
         }
+    }
+
+    /// Whether the machine does not cut with a feed, as the spindle turns now.
+    #[inline]
+    pub(crate) fn is_above_cutting_speed(&self, feed: Feed) -> bool {
+        let mm_per_min = match feed {
+            Feed::PerMinute(feed) => feed.0.to_mm(),
+            Feed::PerRevolution(_) if self.modal.spindle == SpindleState::Stop => return false,
+            Feed::PerRevolution(feed) => feed.0.to_mm() * f64::from(self.present_rpm().0),
+        };
+        mm_per_min > self.machine_limits.feed_mm_per_min
     }
 
     /// Gives out the state of the spindle when it is a new one.
@@ -186,13 +192,17 @@ impl Core {
     /// Warnings about the spindle before a cutting move.
     #[inline]
     pub(crate) fn check_spindle(&mut self) {
-        if self.modal.spindle == SpindleState::Stop
-            && self.modal.feed_mode == crate::modal::FeedMode::PerRevolution
-            && !self.said_spindle_stands
-            && !self.is_capturing()
-        {
+        if self.cuts_beside_standing_spindle() && !self.is_capturing() {
             self.said_spindle_stands = true;
             self.warn_once("spindle-not-started-warning");
         }
+    }
+
+    /// Whether a cut would feed by the revolutions of a spindle that stands, and nothing was said of it yet.
+    #[inline]
+    pub(crate) fn cuts_beside_standing_spindle(&self) -> bool {
+        self.modal.spindle == SpindleState::Stop
+            && self.modal.feed_mode == crate::modal::FeedMode::PerRevolution
+            && !self.said_spindle_stands
     }
 }

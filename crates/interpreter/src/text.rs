@@ -4,7 +4,7 @@
 //! given cut off and marked; what lies behind is passed over piece by piece.
 
 use turnwright_diagnostics::SourceId;
-use turnwright_syntax::find_line_end;
+use turnwright_syntax::{LineEnd, find_line_end};
 
 use crate::limits::{HELD_TEXT_BYTES_MAX, PARKED_TEXTS_MAX};
 use crate::{Environment, ReadFault};
@@ -101,7 +101,7 @@ impl Text {
 
     /// Where the next line begins.
     pub(crate) fn cursor(&self) -> Cursor {
-        Cursor { source: self.source, offset: self.base + self.at as u64, line: self.next_line }
+        Cursor { source: self.source, offset: self.next_offset(), line: self.next_line }
     }
 
     /// Goes to another line.
@@ -177,6 +177,27 @@ impl Text {
         }
     }
 
+    /// What of the text lies in the window behind the line last read.
+    #[inline]
+    pub(crate) fn ahead(&self) -> &[u8] {
+        self.buffer.get(self.at..self.filled).unwrap_or(&[])
+    }
+
+    /// Takes the line at the start of [`Text::ahead`].
+    #[inline]
+    pub(crate) fn take_ahead(&mut self, end: LineEnd) -> Line {
+        let line = self.line(self.at + end.start);
+        self.at += end.next;
+        line
+    }
+
+    /// Where the next line begins, counted from the start of the text.
+    #[inline]
+    pub(crate) fn next_offset(&self) -> u64 {
+        self.base + self.at as u64
+    }
+
+    #[inline]
     fn line(&mut self, end: usize) -> Line {
         let number = self.next_line;
         self.next_line = number.saturating_add(1);

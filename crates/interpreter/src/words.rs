@@ -38,7 +38,7 @@ impl Role {
     }
 }
 
-const POWER: [i64; 10] =
+pub(crate) const POWER: [i64; 10] =
     [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000];
 
 /// Numbers with fewer digits than this are short enough and small enough for every control.
@@ -53,6 +53,15 @@ const FINE: i64 = LeastIncrement::METRIC_C.nm();
 const fn nearest(digits: i64, step: i64) -> i64 {
     let half = if digits < 0 { -step / 2 } else { step / 2 };
     (digits + half) / step
+}
+
+/// Whether a feed is usual in the other feed mode: more than this a revolution, or less than this a minute, is hardly
+/// ever meant.
+#[inline]
+pub(crate) fn is_strange_feed(feed: Length, per_revolution: bool) -> bool {
+    const PER_REVOLUTION_MAX: Length = Length::from_mm(10);
+    const PER_MINUTE_MIN: Length = Length::from_mm(1);
+    if per_revolution { feed > PER_REVOLUTION_MAX } else { feed < PER_MINUTE_MIN && !feed.is_zero() }
 }
 
 impl Core {
@@ -70,15 +79,25 @@ impl Core {
     /// A length word by the decimal rule of the control.
     #[inline]
     pub(crate) fn length(&self, word: &Word) -> Result<Length, Alarm> {
-        if let Value::Number(number) = word.value
-            && (number.has_point || self.settings.is_calculator)
-            && !self.modal.is_inch
-            && let Some(nm) = self.millimetres(number)
-            && nm.abs() < self.settings.length_limit_nm
+        if let Value::Number(number) = &word.value
+            && let Some(length) = self.plain_length(number)
         {
-            return Ok(Length::from_nm(nm));
+            return Ok(length);
         }
         self.length_with(word, self.modal.increment(&self.settings))
+    }
+
+    /// A length in millimetres where little can go wrong; any other has to be looked at with its word.
+    ///
+    /// By reference, as all numbers of short lines: whoever reads one as a whole that was just written field by field
+    /// waits for the fields.
+    #[inline]
+    pub(crate) fn plain_length(&self, number: &Decimal) -> Option<Length> {
+        if !(number.has_point || self.settings.is_calculator) || self.modal.is_inch {
+            return None;
+        }
+        let nm = self.millimetres(number)?;
+        (nm.abs() < self.settings.length_limit_nm).then(|| Length::from_nm(nm))
     }
 
     /// A length word whose value counts, or is long, large or missing.
@@ -96,7 +115,7 @@ impl Core {
 
     /// Millimetres in nanometres where little can go wrong; [`Core::length_of`] does the rest.
     #[inline]
-    fn millimetres(&self, number: Decimal) -> Option<i64> {
+    fn millimetres(&self, number: &Decimal) -> Option<i64> {
         let increment = self.settings.metric_increment.nm();
         if number.scale <= self.settings.metric_decimals {
             // Nearly every word: no finer than the increment.
@@ -176,9 +195,14 @@ impl Core {
     /// The one place where an X-like word becomes a radius: its role decides, not its letter.
     #[inline]
     pub(crate) fn radius(&self, word: &Word, role: Role) -> Result<Radius, Alarm> {
-        let length = self.length(word)?;
+        Ok(self.radius_of(self.length(word)?, role))
+    }
+
+    /// The radius that the length of an X-like word means.
+    #[inline]
+    pub(crate) fn radius_of(&self, length: Length, role: Role) -> Radius {
         let is_diameter = role.is_diameter() && !self.settings.x_is_radius;
-        Ok(if is_diameter { Diameter(length).to_radius() } else { Radius(length) })
+        if is_diameter { Diameter(length).to_radius() } else { Radius(length) }
     }
 
     /// The way back: a coordinate of X as programs write and read it.
@@ -272,9 +296,15 @@ impl Core {
     /// millimetres per minute (or thousandths): the parameters say which.
     #[inline]
     fn feed(&self, word: &Word, number: Decimal, per_revolution: bool) -> Result<Length, Alarm> {
+        self.plain_feed(number, per_revolution).ok_or_else(|| self.alarm("number-too-long", word))
+    }
+
+    /// As [`Core::feed`]; `None` for a number that is too long.
+    #[inline]
+    pub(crate) fn plain_feed(&self, number: Decimal, per_revolution: bool) -> Option<Length> {
         let number = if number.is_computed() { number.rounded(6) } else { number };
         if number.has_point && !self.modal.is_inch && number.scale <= 6 && number.digits < 1_000_000_000 {
-            return Ok(Length::from_nm(number.digits * POWER[usize::from(6 - number.scale)]));
+            return Some(Length::from_nm(number.digits * POWER[usize::from(6 - number.scale)]));
         }
         let unit: i64 = if self.modal.is_inch { 25_400_000 } else { 1_000_000 };
         let (mul, div) = if number.has_point || self.settings.is_calculator {
@@ -297,23 +327,15 @@ impl Core {
         };
         let digits_max = POWER[usize::from(self.control.limits.number_digits.min(9))];
         if number.scale > 9 || (number.digits >= digits_max && !number.is_computed()) {
-            return Err(self.alarm("number-too-long", word));
+            return None;
         }
-        match number.digits.checked_mul(mul) {
-            Some(nm) => Ok(Length::from_nm(nm / div)),
-            None => Err(self.alarm("number-too-long", word)),
-        }
+        number.digits.checked_mul(mul).map(|nm| Length::from_nm(nm / div))
     }
 
     /// Warns about a feed that is usual in the other feed mode.
     #[inline]
     fn check_feed(&mut self, word: &Word, feed: Length, per_revolution: bool) {
-        // More than this a revolution, or less than this a minute, is hardly ever meant.
-        const PER_REVOLUTION_MAX: Length = Length::from_mm(10);
-        const PER_MINUTE_MIN: Length = Length::from_mm(1);
-        let is_strange =
-            if per_revolution { feed > PER_REVOLUTION_MAX } else { feed < PER_MINUTE_MIN && !feed.is_zero() };
-        if is_strange {
+        if is_strange_feed(feed, per_revolution) {
             self.warn("feed-suspicious", word);
         } else {
             self.check_cutting_speed();

@@ -18,6 +18,7 @@ mod expression;
 mod lines;
 mod number;
 mod scan;
+mod short;
 mod tree;
 
 pub use block::{Block, Extent, ExtentKind, Fault, FaultKind, Skip, Value, Word};
@@ -28,4 +29,5 @@ pub use expression::{
 pub use lines::{LineEnd, find_line_end};
 pub use number::Decimal;
 pub use scan::{BLOCK_WORDS_MAX, scan_block};
+pub use short::ShortLine;
 pub use tree::{Token, TokenKind, Tree};

@@ -17,6 +17,9 @@ pub struct Decimal {
     pub is_negative: bool,
 }
 
+/// Most digits that a number is read with; more are a fault.
+pub(crate) const DIGITS_MAX: u8 = 18;
+
 /// Decimal places that computed values are kept with.
 const COMPUTED_PLACES: u8 = 9;
 

@@ -1,13 +1,10 @@
 //! The scanner: one block of a line at a time.
 
-use crate::number::Decimal;
+use crate::number::{DIGITS_MAX, Decimal};
 use crate::{Block, Extent, ExtentKind, Fault, FaultKind, Value, Word};
 
 /// Most words in one block; a control takes far fewer.
 pub const BLOCK_WORDS_MAX: usize = 200;
-
-/// Most digits that a number is read with; more are a fault.
-const DIGITS_MAX: u8 = 18;
 
 /// Scans the block that begins at `from` in `line` (a line without its line end) into `block`, and returns
 /// where the next block of the same line begins: `line.len()` when there is none.

@@ -20,5 +20,5 @@ pub use feed::{
     Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Revolutions, Rpm, Seconds, SurfaceSpeed,
 };
 pub use length::{Diameter, LeastIncrement, Length, Radius};
-pub use number::{write_degrees, write_fixed, write_millimetres};
+pub use number::{write_degrees, write_fixed, write_millimetres, write_whole};
 pub use position::{Displacement, Frame, MachineTurret, Position, Shift, WorkNose, WorkTip};

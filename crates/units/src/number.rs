@@ -6,31 +6,86 @@ use crate::{Angle, Length};
 ///
 /// `decimals` is at most 18.
 pub fn write_fixed(out: &mut Vec<u8>, value: i64, decimals: u8) {
-    let mut magnitude = value.unsigned_abs();
-    let mut places = decimals.min(18);
-    while places > 0 && magnitude.is_multiple_of(10) {
-        magnitude /= 10;
-        places -= 1;
-    }
-    // 20 digits of a u64, a point, a sign, and a zero before the point.
-    let mut text = [0u8; 24];
-    let mut at = text.len();
-    let mut written = 0u8;
-    while magnitude > 0 || written <= places {
-        if written == places && places > 0 {
-            at -= 1;
-            text[at] = b'.';
+    let magnitude = value.unsigned_abs();
+    // The usual places by themselves: a division by a known number costs little.
+    let (whole, fraction) = match decimals {
+        0 => (magnitude, 0),
+        3 => (magnitude / 1_000, magnitude % 1_000),
+        4 => (magnitude / 10_000, magnitude % 10_000),
+        6 => (magnitude / 1_000_000, magnitude % 1_000_000),
+        _ => {
+            let unit = 10u64.pow(u32::from(decimals.min(18)));
+            (magnitude / unit, magnitude % unit)
         }
-        at -= 1;
-        text[at] = b'0' + (magnitude % 10) as u8;
-        magnitude /= 10;
-        written += 1;
+    };
+    let mut text = [b'0'; NUMBER_BYTES * 2];
+    // Where the point stands, when there is one: the digits behind it keep their leading zeros.
+    let point = WHOLE_BYTES;
+    let mut end = point;
+    if fraction > 0 {
+        text[point] = b'.';
+        end = point + 1 + usize::from(decimals.min(18));
+        write_digits(&mut text, end, fraction);
+        while text[end - 1] == b'0' {
+            end -= 1;
+        }
     }
+    let mut start = write_digits(&mut text, point, whole);
     if value < 0 {
-        at -= 1;
-        text[at] = b'-';
+        start -= 1;
+        text[start] = b'-';
     }
-    out.extend_from_slice(&text[at..]);
+    append(out, &text, start..end);
+}
+
+/// Writes a whole number.
+pub fn write_whole(out: &mut Vec<u8>, number: u32) {
+    let mut text = [b'0'; NUMBER_BYTES * 2];
+    let start = write_digits(&mut text, WHOLE_BYTES, number.into());
+    append(out, &text, start..WHOLE_BYTES);
+}
+
+/// A sign and the digits of a whole number of 64 bits.
+const WHOLE_BYTES: usize = 21;
+/// The same with a point and eighteen places.
+const NUMBER_BYTES: usize = WHOLE_BYTES + 1 + 18;
+
+/// Every number below a hundred, two digits each.
+const PAIRS: [[u8; 2]; 100] = {
+    let mut pairs = [[b'0'; 2]; 100];
+    let mut number = 0;
+    while number < pairs.len() {
+        pairs[number] = [b'0' + (number / 10) as u8, b'0' + (number % 10) as u8];
+        number += 1;
+    }
+    pairs
+};
+
+/// Writes the digits of a number so that they end in front of `end`; where they start.
+#[inline]
+fn write_digits(text: &mut [u8; NUMBER_BYTES * 2], end: usize, number: u64) -> usize {
+    let (mut at, mut rest) = (end, number);
+    while rest >= 100 {
+        at -= 2;
+        text[at..at + 2].copy_from_slice(&PAIRS[(rest % 100) as usize]);
+        rest /= 100;
+    }
+    if rest >= 10 {
+        at -= 2;
+        text[at..at + 2].copy_from_slice(&PAIRS[rest as usize]);
+    } else {
+        at -= 1;
+        text[at] = b'0' + rest as u8;
+    }
+    at
+}
+
+/// Appends a part of `text`. A copy of known length is a few moves, one of any length is a call.
+#[inline]
+fn append(out: &mut Vec<u8>, text: &[u8; NUMBER_BYTES * 2], part: std::ops::Range<usize>) {
+    let length = out.len() + part.len();
+    out.extend_from_slice(&text[part.start..part.start + NUMBER_BYTES]);
+    out.truncate(length);
 }
 
 /// Writes a length in millimetres, rounded to `decimals` (at most 6) places, halves away from zero,
@@ -68,6 +123,7 @@ mod tests {
         assert_eq!(fixed(i64::MIN, 6), "-9223372036854.775808");
         assert_eq!(fixed(1, 18), "0.000000000000000001");
         assert_eq!(fixed(i64::MIN, 18), "-9.223372036854775808");
+        assert_eq!(fixed(i64::MIN, 0), "-9223372036854775808");
     }
 
     #[test]
@@ -83,6 +139,15 @@ mod tests {
             let scaled: f64 = text.parse().expect("a number");
             let expected = value as f64 / 10f64.powi(decimals.into());
             assert!((scaled - expected).abs() <= expected.abs() * 1e-15, "{value} {decimals} {text}");
+        }
+    }
+
+    #[test]
+    fn whole_numbers_are_written_as_they_are() {
+        for number in [0, 7, 10, 99, 100, 12_345, u32::MAX] {
+            let mut out = b"n".to_vec();
+            write_whole(&mut out, number);
+            assert_eq!(String::from_utf8(out).expect("digits"), format!("n{number}"));
         }
     }
 

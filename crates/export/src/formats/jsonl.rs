@@ -18,6 +18,7 @@ use turnwright_canon::{
 };
 use turnwright_units::{
     Feed, LeastIncrement, Length, Position, WorkNose, WorkTip, write_degrees, write_fixed, write_millimetres,
+    write_whole,
 };
 
 /// Decimal places of feeds, leads and seconds, which are finer than any least increment.
@@ -378,19 +379,6 @@ fn write_number(out: &mut Vec<u8>, name: &[u8], number: u32) {
     } else {
         write_whole(out, number);
     }
-}
-
-/// Half of the numbers of a line are whole and short: worth a writer without sign and point.
-fn write_whole(out: &mut Vec<u8>, number: u32) {
-    let mut digits = [0u8; 10];
-    let mut at = digits.len();
-    let mut rest = number;
-    while rest > 0 || at == digits.len() {
-        at -= 1;
-        digits[at] = b'0' + (rest % 10) as u8;
-        rest /= 10;
-    }
-    out.extend_from_slice(&digits[at..]);
 }
 
 /// A time or a number of turns. What is no number is written as JSON's `null`.

@@ -20,18 +20,19 @@ use turnwright_geometry::{ArcFault, Point, centre_from_radius, sweep_rad};
 use turnwright_syntax::{Block, Word};
 use turnwright_units::{Feed, LeastIncrement, Length, Position, Radius, WorkTip};
 
-use super::Function;
+use super::{Function, PathKind};
 use crate::block::Call;
 use crate::corner::Motion;
 use crate::machine::Core;
 use crate::plane::{place, point};
 use crate::report::Alarm;
+use crate::short::ShortMove;
 use crate::words::Role;
 
 pub(super) static ARC_CLOCKWISE: Function =
     Function::motion("arc-clockwise", |core, call| arc(core, call, Turn::Clockwise))
         .with_letters(b"RIKLD")
-        .making_a_path()
+        .making_a_path(PathKind::Arc(Turn::Clockwise))
         .triggered_by(b"RIK")
         .with_other_axes()
         .allowed_in_figure()
@@ -40,7 +41,7 @@ pub(super) static ARC_CLOCKWISE: Function =
 pub(super) static ARC_COUNTER_CLOCKWISE: Function =
     Function::motion("arc-counter-clockwise", |core, call| arc(core, call, Turn::CounterClockwise))
         .with_letters(b"RIKLD")
-        .making_a_path()
+        .making_a_path(PathKind::Arc(Turn::CounterClockwise))
         .triggered_by(b"RIK")
         .with_other_axes()
         .allowed_in_figure()
@@ -94,6 +95,49 @@ fn arc(core: &mut Core, call: &mut Call<'_>, turn: Turn) -> Result<(), Alarm> {
     }
     core.modal.position = to;
     core.emit_move(to, Action::Feed { to, shape: Shape::Line, feed, others: None })
+}
+
+/// How much nearer to the centre one end of an arc lies than the other.
+#[inline]
+fn end_error_mm(centre: Position<WorkTip>, from: Position<WorkTip>, to: Position<WorkTip>) -> f64 {
+    const NM_PER_MM: f64 = 1e6;
+    let distance_nm = |end: Position<WorkTip>| {
+        let (x, z) = ((end.x - centre.x).0.to_nm_float(), (end.z - centre.z).to_nm_float());
+        (x * x + z * z).sqrt()
+    };
+    (distance_nm(from) - distance_nm(to)).abs() / NM_PER_MM
+}
+
+/// The centre of the arc of a short line, where its words need no second look and its ends fit the circle.
+///
+/// Always inline: it has one caller, and what is returned through memory is waited for.
+#[inline(always)]
+pub(crate) fn short_centre(core: &Core, line: &ShortMove<'_>, turn: Turn) -> Option<Position<WorkTip>> {
+    let &ShortMove { from, to, .. } = line;
+    let offset = |letter| match line.number(letter) {
+        Some(number) => core.plain_length(number),
+        None => Some(Length::ZERO),
+    };
+    let (x, z) = (core.radius_of(offset(b'I')?, Role::ArcOffset), offset(b'K')?);
+    let is_by_centre = !(x.0.is_zero() && z.is_zero());
+    match line.number(b'R') {
+        None if is_by_centre => {
+            let centre = Position::new(from.x + x, from.z + z);
+            let error = end_error_mm(centre, from, to);
+            let tolerance = core.settings.arc_tolerance_mm;
+            let fits = error <= core.modal.increment(&core.settings).to_mm()
+                && (tolerance <= 0.0 || error <= tolerance);
+            fits.then_some(centre)
+        }
+        Some(number) if line.number(b'I').or(line.number(b'K')).is_none() && from != to => {
+            let radius = core.radius_of(core.plain_length(number)?, Role::ArcOffset);
+            if radius.0.signum() <= 0 || core.is_doubtful_half_circle(from, to, radius) {
+                return None;
+            }
+            place(core.centre_by_radius(from, to, radius, turn).ok()?)
+        }
+        _ => None,
+    }
 }
 
 impl Core {
@@ -153,16 +197,10 @@ impl Core {
             self.warn("arc-goes-nowhere", word);
             return Ok(());
         }
-        let tolerance =
-            if self.settings.arc_small_radius_alarm { 0.0 } else { self.settings.arc_tolerance_mm.max(0.0) };
-        let clockwise = arc.turn == Turn::Clockwise;
-        let half_chord = point(arc.from).distance(point(arc.to)) / 2.0;
-        if self.control.policies.negative_arc_radius == NegativeArcRadius::Alarm
-            && half_chord > radius.to_mm() * (HALF_CIRCLE_DEG / 2.0).to_radians().sin()
-        {
+        if self.is_doubtful_half_circle(arc.from, arc.to, radius) {
             self.warn("half-circle-by-radius", word);
         }
-        match centre_from_radius(point(arc.from), point(arc.to), radius.to_mm(), clockwise, tolerance) {
+        match self.centre_by_radius(arc.from, arc.to, radius, arc.turn) {
             Ok(centre) => match place(centre) {
                 Some(centre) => self.cut_arc(arc, centre),
                 None => Err(self.alarm("number-too-long", word)),
@@ -170,6 +208,32 @@ impl Core {
             Err(ArcFault::RadiusTooSmall { missing_mm }) => Err(self.arc_alarm(word, missing_mm)),
             Err(ArcFault::NoChord) => Ok(()),
         }
+    }
+
+    /// Whether an arc is so nearly a half circle that a control without long arcs may take the other one.
+    #[inline]
+    fn is_doubtful_half_circle(
+        &self,
+        from: Position<WorkTip>,
+        to: Position<WorkTip>,
+        radius: Radius,
+    ) -> bool {
+        let half_chord = point(from).distance(point(to)) / 2.0;
+        self.control.policies.negative_arc_radius == NegativeArcRadius::Alarm
+            && half_chord > radius.to_mm() * (HALF_CIRCLE_DEG / 2.0).to_radians().sin()
+    }
+
+    #[inline]
+    fn centre_by_radius(
+        &self,
+        from: Position<WorkTip>,
+        to: Position<WorkTip>,
+        radius: Radius,
+        turn: Turn,
+    ) -> Result<Point, ArcFault> {
+        let tolerance =
+            if self.settings.arc_small_radius_alarm { 0.0 } else { self.settings.arc_tolerance_mm.max(0.0) };
+        centre_from_radius(point(from), point(to), radius.to_mm(), turn == Turn::Clockwise, tolerance)
     }
 
     pub(super) fn arc_alarm(&self, word: &Word, error_mm: f64) -> Alarm {
@@ -194,8 +258,7 @@ impl Core {
         }
         let centre = Position::new(arc.from.x + x, arc.from.z + z);
         let at_start = point(centre).distance(point(arc.from));
-        let at_end = point(centre).distance(point(arc.to));
-        let error = (at_start - at_end).abs();
+        let error = end_error_mm(centre, arc.from, arc.to);
         let tolerance = self.settings.arc_tolerance_mm;
         let policy = self.control.policies.arc_end_error;
         if tolerance > 0.0 && error > tolerance && policy != ArcEndError::RecentreAlways {

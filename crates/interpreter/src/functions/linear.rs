@@ -11,7 +11,7 @@
 
 use turnwright_canon::{Action, Shape};
 
-use super::Function;
+use super::{Function, PathKind};
 use crate::block::Call;
 use crate::corner::Motion;
 use crate::machine::Core;
@@ -19,7 +19,7 @@ use crate::report::Alarm;
 
 pub(super) static LINEAR: Function = Function::motion("linear", linear)
     .drawing_lines()
-    .making_a_path()
+    .making_a_path(PathKind::Line)
     .with_other_axes()
     .allowed_in_figure()
     .allowed_in_rotation();

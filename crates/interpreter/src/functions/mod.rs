@@ -5,7 +5,7 @@
 //! that the same function can be `G71` here and `G73` there, and codes that are not executed yet are known by
 //! name. `linear.rs` is the model file.
 
-mod arc;
+pub(crate) mod arc;
 mod arc_thread;
 mod conic;
 mod coordinate_setting;
@@ -43,6 +43,7 @@ mod thread;
 mod three_point_arc;
 mod transforms;
 
+use turnwright_canon::Turn;
 use turnwright_control::{CodeSystem, Control, Functions, parse_code};
 use turnwright_syntax::Block;
 
@@ -54,6 +55,14 @@ use crate::report::Alarm;
 
 /// What a function does when its block runs.
 type Run = fn(&mut Core, &mut Call<'_>) -> Result<(), Alarm>;
+
+/// A path of single moves: lines of such may go the [`short`](crate::short) way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PathKind {
+    Rapid,
+    Line,
+    Arc(Turn),
+}
 
 /// When a function acts.
 #[derive(Clone, Copy)]
@@ -103,7 +112,7 @@ pub(crate) struct Function {
     /// Its lines may be given by their angle.
     pub(crate) draws_lines: bool,
     /// Its blocks are single moves: see [`plain`](crate::plain).
-    pub(crate) is_path: bool,
+    pub(crate) path: Option<PathKind>,
 }
 
 /// The bits of some letters.
@@ -137,7 +146,7 @@ impl Function {
             is_multiple_cycle: false,
             is_hole_cycle: false,
             draws_lines: false,
-            is_path: false,
+            path: None,
         }
     }
 
@@ -225,8 +234,8 @@ impl Function {
     }
 
     /// A path of single moves.
-    pub(crate) const fn making_a_path(mut self) -> Self {
-        self.is_path = true;
+    pub(crate) const fn making_a_path(mut self, kind: PathKind) -> Self {
+        self.path = Some(kind);
         self
     }
 

@@ -9,8 +9,8 @@
 
 use turnwright_canon::Action;
 
-use super::Function;
 use super::linear::PATH_LETTERS;
+use super::{Function, PathKind};
 use crate::block::Call;
 use crate::corner::Motion;
 use crate::machine::Core;
@@ -18,7 +18,7 @@ use crate::report::Alarm;
 
 pub(super) static RAPID: Function = Function::motion("rapid", rapid)
     .drawing_lines()
-    .making_a_path()
+    .making_a_path(PathKind::Rapid)
     .with_other_axes()
     .allowed_in_figure()
     .allowed_in_rotation();
