@@ -188,8 +188,7 @@ fn find_setup(
     if let Some(path) = &path {
         parse_setup(path, &content)?;
     }
-    let mut comments = Vec::new();
-    let mut first = None;
+    let (mut comments, mut places) = (Vec::new(), Vec::new());
     for (place, comment) in head_comments(text) {
         let Some(piece) = setup_comment(&comment) else { continue };
         match piece {
@@ -202,14 +201,22 @@ fn find_setup(
                 continue;
             }
         }
-        first.get_or_insert((place, comment));
+        places.push((place, comment));
     }
-    let setup = Setup::with_comments(&content, comments).map_err(|fault| match (first, &path) {
-        (Some((place, comment)), _) => {
-            let fault = comment_fault(place, &comment, fault.message);
-            Finding::new(text.name.as_str(), fault).failed().located(text)
+    let setup = Setup::with_comments(&content, comments.clone()).map_err(|fault| {
+        // The first comment from which on it is wrong in this way.
+        let is_wrong = |count: &usize| {
+            let some = Setup::with_comments(&content, comments[..*count].to_vec());
+            some.is_err_and(|other| other.message == fault.message)
+        };
+        let to_blame = (1..=comments.len()).find(is_wrong).and_then(|count| places.get(count - 1));
+        match to_blame {
+            Some((place, comment)) => {
+                let fault = comment_fault(*place, comment, fault.message);
+                Finding::new(text.name.as_str(), fault).failed().located(text)
+            }
+            None => invalid_setup(path.as_deref().unwrap_or(Path::new("--setup")), &fault),
         }
-        (None, path) => invalid_setup(path.as_deref().unwrap_or(Path::new("--setup")), &fault),
     })?;
     Ok((setup, path))
 }

@@ -65,6 +65,16 @@ fn setups_that_cannot_be_are_refused_with_key_and_place() {
     let refused: Value = serde_json::from_str(ran.out.lines().next().expect("a line")).expect("JSON");
     assert_eq!((ran.status, refused["key"].as_str()), (2, Some("setup-comment-invalid")), "{}", ran.out);
     assert!(refused["message"].as_str().is_some_and(|text| text.contains("stock.bore_mm")), "{refused}");
+    // Of several comments the one to blame is shown: here the size whose fit the tables do not have.
+    let head = "O1\n(SETUP STOCK D55 L80)\n(SETUP MEASURE D30 Z-5 H7)\n(SETUP MEASURE D30 Z-6 ZC7)\n";
+    let program = folder.file("fit.nc", PROGRAM.replacen("O1\n", head, 1));
+    let ran = turnwright(&["check", &program, "--format", "json"]);
+    let refused: Value = serde_json::from_str(ran.out.lines().next().expect("a line")).expect("JSON");
+    assert_eq!((ran.status, refused["line"].as_u64()), (2, Some(4)), "{}", ran.out);
+    assert!(
+        refused["message"].as_str().is_some_and(|text| text.contains("measure.2.tolerance_mm")),
+        "{refused}"
+    );
     let program = folder.file("bore.nc", PROGRAM);
     folder.file("bore.toml", "[stock]\ndiameter_mm = 30\nlength_mm = 70\nbore_mm = 40\n");
     let ran = turnwright(&["check", &program, "--format", "json"]);

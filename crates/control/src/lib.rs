@@ -7,6 +7,7 @@
 //! policy (see [`policy`]) is answered there and asked by the stage concerned.
 
 mod blank;
+mod fits;
 mod functions;
 mod limits;
 mod machine;
@@ -47,8 +48,8 @@ pub use setup_comment::setup_comment;
 pub use setup_text::setup_key_words;
 pub use signal::Signal;
 pub use suggest::nearest;
-pub use tooling::{Flank, Hand, Tool, ToolEntry, ToolKind, ToolPost, ToolSide};
-pub use workholding::{Chuck, ChuckOutlines, Grip, Tailstock};
+pub use tooling::{CuttingTurn, Flank, Hand, InsertFacing, Tool, ToolEntry, ToolKind, ToolPost, ToolSide};
+pub use workholding::{Bar, BarEnd, Chuck, ChuckOutlines, Grip, GripLaw, Tailstock};
 
 pub(crate) mod embedded {
     //! Made by the build script.

@@ -41,6 +41,8 @@ pub struct Material {
     pub mc: f64,
     /// Mass of a cubic centimetre, g.
     pub density_g_per_cm3: f64,
+    /// Modulus of elasticity, GPa.
+    pub elastic_gpa: f64,
     title: Words,
 }
 
@@ -64,6 +66,11 @@ impl Material {
             Language::English => &self.title.en,
             Language::Chinese => &self.title.zh,
         }
+    }
+
+    /// Speed of sound along a bar of it.
+    pub fn speed_of_sound_m_per_s(&self) -> f64 {
+        (self.elastic_gpa * 1e9 / (self.density_g_per_cm3 * 1e3)).sqrt()
     }
 
     /// Its first name and the others.

@@ -5,6 +5,8 @@
 
 use serde::Deserialize;
 
+use crate::fits::fit_deviations_mm;
+
 /// Sizes and places beyond this are none, mm.
 const SIZE_MM_MAX: f64 = 10_000.0;
 
@@ -159,7 +161,11 @@ impl MeasureEntry {
             return Err((key, "must be greater than zero".to_string()));
         }
         let quantity = self.quantity(key)?;
-        let deviations_mm = self.tolerance_mm.as_ref().map(|value| deviations(value, nominal_mm)).transpose();
+        let deviations_mm = self.tolerance_mm.as_ref().map(|value| match value {
+            toml::Value::String(fit) => fit_of(fit, key, nominal_mm),
+            value => deviations(value, nominal_mm),
+        });
+        let deviations_mm = deviations_mm.transpose();
         let deviations_mm = deviations_mm.map_err(|why| ("tolerance_mm", why))?;
         Ok(Measure { name: self.name.clone(), quantity, nominal_mm, deviations_mm })
     }
@@ -205,6 +211,31 @@ impl MeasureEntry {
     }
 }
 
+/// Deviations by a fit, `h7` or `50h7`: of shafts for outer sizes, of holes for inner ones.
+fn fit_of(text: &str, key: &str, nominal_mm: f64) -> Result<(f64, f64), String> {
+    let text = text.trim();
+    let letter = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (size, fit) = text.split_at(letter);
+    if !size.is_empty() && size.trim().parse() != Ok(nominal_mm) {
+        return Err(format!(
+            "{text}: {size} is not the size of {nominal_mm} mm, nor is this a fit of ISO 286"
+        ));
+    }
+    let is_hole = fit.starts_with(|c: char| c.is_ascii_uppercase());
+    match key {
+        "diameter_mm" if is_hole => {
+            Err(format!("{fit} is for holes; an outer diameter takes small letters, as in h7"))
+        }
+        "bore_mm" | "width_mm" if !is_hole => {
+            Err(format!("{fit} is for shafts; bores and grooves take capitals, as in H7"))
+        }
+        "major_mm" | "minor_mm" | "lead_mm" => {
+            Err(format!("{fit}: threads have tolerances of their own; give [upper, lower] in mm"))
+        }
+        _ => fit_deviations_mm(nominal_mm, fit),
+    }
+}
+
 /// Upper and lower deviation: `[0, -0.021]` in either order, or `0.05` for both ways.
 fn deviations(value: &toml::Value, nominal_mm: f64) -> Result<(f64, f64), String> {
     let number = |value: &toml::Value| match value {
@@ -212,7 +243,8 @@ fn deviations(value: &toml::Value, nominal_mm: f64) -> Result<(f64, f64), String
         toml::Value::Float(number) => Some(*number).filter(|number| number.is_finite()),
         _ => None,
     };
-    let expected = || "is [upper, lower] in mm, for example [0, -0.021], or one number".to_string();
+    let expected =
+        || "is [upper, lower] in mm, for example [0, -0.021], one number, or a fit \"h7\"".to_string();
     let (upper, lower) = match value {
         toml::Value::Array(both) => match both.as_slice() {
             [a, b] => {
@@ -269,6 +301,11 @@ mod tests {
         assert_eq!(length.deviations_mm, Some((0.1, -0.1)));
         let width = read("at = \"X25\"\nwidth_mm = 4\ntolerance_mm = [-0.1, 0.2]").expect("a size");
         assert_eq!(width.deviations_mm, Some((0.2, -0.1)));
+        let fit = |text: &str| read(text).expect(text).deviations_mm;
+        assert_eq!(fit("at = \"Z-1\"\ndiameter_mm = 50\ntolerance_mm = \"h7\""), Some((0.0, -0.025)));
+        assert_eq!(fit("at = \"Z-1\"\ndiameter_mm = 50\ntolerance_mm = \"50h7\""), Some((0.0, -0.025)));
+        assert_eq!(fit("at = \"Z-1\"\nbore_mm = 20\ntolerance_mm = \"20H7\""), Some((0.021, 0.0)));
+        assert_eq!(fit("at = \"X25\"\nwidth_mm = 8\ntolerance_mm = \"N9\""), Some((0.0, -0.036)));
         assert_eq!(read("at = \"Z1\"\nlead_mm = 1.5").expect("a size").deviations_mm, None);
     }
 
@@ -291,7 +328,13 @@ mod tests {
             ("at = \"Z3\"\nbore_mm = 3\ntolerance_mm = [0.1, nan]", "tolerance_mm"),
             ("at = \"Z3\"\nbore_mm = 3\ntolerance_mm = -0.1", "tolerance_mm"),
             ("at = \"Z3\"\nbore_mm = 3\ntolerance_mm = 3", "tolerance_mm"),
-            ("at = \"Z3\"\nbore_mm = 3\ntolerance_mm = \"H7\"", "tolerance_mm"),
+            ("at = \"Z3\"\nbore_mm = 3\ntolerance_mm = true", "tolerance_mm"),
+            ("at = \"Z3\"\nbore_mm = 3\ntolerance_mm = \"h7\"", "tolerance_mm"),
+            ("at = \"Z3\"\ndiameter_mm = 3\ntolerance_mm = \"H7\"", "tolerance_mm"),
+            ("at = \"Z3\"\ndiameter_mm = 3\ntolerance_mm = \"4h7\"", "tolerance_mm"),
+            ("at = \"Z3\"\ndiameter_mm = 3\ntolerance_mm = \"x7\"", "tolerance_mm"),
+            ("at = \"Z3\"\nmajor_mm = 20\ntolerance_mm = \"6g\"", "tolerance_mm"),
+            ("at = \"Z3\"\nlead_mm = 2\ntolerance_mm = \"h7\"", "tolerance_mm"),
         ] {
             let (found, why) = read(text).expect_err(text);
             assert_eq!((found, why.is_empty()), (key, false), "{text}: {why}");

@@ -9,8 +9,8 @@ use crate::machine::Machine;
 use crate::setup_comment::lay_over;
 use crate::signal::Signal;
 use crate::{
-    Axis, Chuck, ChuckOutlines, Material, Measure, MeasureEntry, Stock, Tailstock, Tool, ToolEntry, embedded,
-    nearest,
+    Axis, Bar, Chuck, ChuckOutlines, Material, Measure, MeasureEntry, Stock, Tailstock, Tool, ToolEntry,
+    embedded, nearest,
 };
 
 /// A pair of axis values in millimetres; X as a diameter.
@@ -209,6 +209,9 @@ pub struct Setup {
     /// What holds it.
     #[serde(default)]
     pub chuck: Option<Chuck>,
+    /// What stands out behind the spindle.
+    #[serde(default)]
+    pub bar: Option<Bar>,
     /// A centre in its front face.
     #[serde(default)]
     pub tailstock: Option<Tailstock>,
@@ -358,6 +361,7 @@ impl Setup {
         self.measures()?;
         self.stock_outline()?;
         self.chuck_outlines()?;
+        self.bar_critical_rpm()?;
         self.tailstock_outline()?;
         let record = self.thread_repair.as_ref().map_or(Ok(()), ThreadRecord::check);
         record.map_err(|fault| of_section("thread-repair", fault))?;
@@ -406,6 +410,16 @@ impl Setup {
         let Some(chuck) = &self.chuck else { return Ok(None) };
         let stock = self.stock_outline()?;
         chuck.outlines(stock.as_ref()).map(Some).map_err(|fault| of_section("chuck", fault))
+    }
+
+    /// The speed at which the bar whips behind the spindle; nothing when the setup says nothing of it.
+    ///
+    /// # Errors
+    /// The key and the reason.
+    pub fn bar_critical_rpm(&self) -> Result<Option<f64>, SetupFault> {
+        let Some(bar) = &self.bar else { return Ok(None) };
+        let critical = bar.critical_rpm(self.stock.as_ref(), self.material()?);
+        critical.map(Some).map_err(|fault| of_section("bar", fault))
     }
 
     /// The centre and its quill.

@@ -2,10 +2,13 @@
 //!
 //! ```text
 //! (SETUP STOCK D50 L80 FACE1)            also BORE20
-//! (SETUP CHUCK GRIP20 D200)              also INSIDE, JAW35, HEIGHT40, Z-60, RPM3000
+//! (SETUP CHUCK GRIP20 D200)              also INSIDE, JAW35, HEIGHT40, Z-60, RPM3000, FORCE30, MAXFORCE60
+//! (SETUP BAR L600 GUIDED)                behind the spindle; also D50, BORE20, FREE
 //! (SETUP TAILSTOCK Z-4)                  also ANGLE60, D25, L60, QUILL70
 //! (SETUP TOOL 1 CNMG120408 PCLNR2525M12 R0.8 TIP3)
 //! (SETUP TOOL 2 GROOVING W3 R0.2)        also CUT-OFF, THREADING, DRILLING D20, INSIDE, FACE, LEFT, FRONT …
+//! (SETUP MEASURE D50 Z-10 H7)            a size: also BORE, WALL, W (with X), L with FROM and TO, MAJOR, MINOR, LEAD;
+//!                                        its tolerance: a fit, +0.02 -0.01, or TOL0.05; NAME SEAT
 //! (SETUP ALLOW tool-offset-differs)      DENY likewise
 //! ```
 //!
@@ -19,7 +22,7 @@ use crate::nearest;
 use crate::tooling::{is_holder, is_insert};
 
 /// What a comment may be about.
-const SECTIONS: [&str; 6] = ["STOCK", "CHUCK", "TAILSTOCK", "TOOL", "ALLOW", "DENY"];
+const SECTIONS: [&str; 8] = ["STOCK", "CHUCK", "BAR", "TAILSTOCK", "TOOL", "MEASURE", "ALLOW", "DENY"];
 
 /// Short names of the keys of a section.
 type Keys = &'static [(&'static str, &'static str)];
@@ -41,7 +44,11 @@ const CHUCK: Keys = &[
     ("D", "diameter_mm"),
     ("L", "length_mm"),
     ("RPM", "rpm_max"),
+    ("FORCE", "grip_force_kn"),
+    ("MAXFORCE", "grip_force_max_kn"),
 ];
+
+const BAR: Keys = &[("L", "behind_mm"), ("D", "diameter_mm"), ("BORE", "bore_mm")];
 
 const TAILSTOCK: Keys = &[
     ("Z", "point_z_mm"),
@@ -81,9 +88,25 @@ const TOOL_WORDS: &[(&str, &str, &str)] = &[
     ("NEUTRAL", "hand", "neutral"),
     ("REAR", "post", "rear"),
     ("FRONT", "post", "front"),
+    ("UP", "insert_faces", "up"),
+    ("DOWN", "insert_faces", "down"),
 ];
 
+const BAR_WORDS: &[(&str, &str, &str)] = &[("FREE", "end", "free"), ("GUIDED", "end", "guided")];
+
 const CHUCK_WORDS: &[(&str, &str, &str)] = &[("OUTSIDE", "grip", "outside"), ("INSIDE", "grip", "inside")];
+
+/// Sizes of a MEASURE comment: the word, its key.
+const SIZES: Keys = &[
+    ("D", "diameter_mm"),
+    ("BORE", "bore_mm"),
+    ("WALL", "wall_mm"),
+    ("W", "width_mm"),
+    ("L", "length_mm"),
+    ("MAJOR", "major_mm"),
+    ("MINOR", "minor_mm"),
+    ("LEAD", "lead_mm"),
+];
 
 /// Values that count: no point in them.
 const WHOLE: [&str; 2] = ["tip", "rpm_max"];
@@ -106,7 +129,9 @@ pub fn setup_comment(comment: &str) -> Option<Result<Table, String>> {
 
 fn read(text: &str) -> Result<Table, String> {
     let mut items = text.split([' ', '\t', ',', ':', '=']).filter(|item| !item.is_empty()).peekable();
-    let section = items.next().ok_or("SETUP is followed by STOCK, CHUCK, TAILSTOCK, TOOL, ALLOW or DENY")?;
+    let section = items
+        .next()
+        .ok_or("SETUP is followed by STOCK, CHUCK, BAR, TAILSTOCK, TOOL, MEASURE, ALLOW or DENY")?;
     if matches!(section, "ALLOW" | "DENY") {
         let names: Vec<Value> = items.map(|item| Value::String(item.to_ascii_lowercase())).collect();
         if names.is_empty() {
@@ -115,15 +140,20 @@ fn read(text: &str) -> Result<Table, String> {
         let switches = Table::from_iter([(section.to_ascii_lowercase(), Value::Array(names))]);
         return Ok(Table::from_iter([("checks".to_string(), Value::Table(switches))]));
     }
+    if section == "MEASURE" {
+        let measure = read_measure(items)?;
+        return Ok(Table::from_iter([("measure".to_string(), Value::Array(vec![Value::Table(measure)]))]));
+    }
     let (keys, words): (Keys, &[_]) = match section {
         "STOCK" => (STOCK, &[]),
         "CHUCK" => (CHUCK, CHUCK_WORDS),
+        "BAR" => (BAR, BAR_WORDS),
         "TAILSTOCK" => (TAILSTOCK, &[]),
         "TOOL" => (TOOL, TOOL_WORDS),
         other => {
             let near = nearest(other, SECTIONS);
             let hint = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-            return Err(format!("{other} is none of STOCK, CHUCK, TAILSTOCK, TOOL, ALLOW and DENY{hint}"));
+            return Err(format!("{other} is none of {}{hint}", SECTIONS.join(", ")));
         }
     };
     let station = if section == "TOOL" {
@@ -168,6 +198,73 @@ fn read(text: &str) -> Result<Table, String> {
     }
     let section = if station.is_some() { "tools".to_string() } else { section.to_ascii_lowercase() };
     Ok(Table::from_iter([(section, Value::Table(table))]))
+}
+
+/// A size of the drawing: what it is, where, and how far off it may be. In a program all letters are capitals: the fit of an
+/// outer size is taken for that of a shaft.
+fn read_measure<'a>(items: impl Iterator<Item = &'a str>) -> Result<Table, String> {
+    let (mut table, mut limits, mut place) = (Table::new(), Vec::new(), Vec::new());
+    let mut items = items.flat_map(|item| item.split('/'));
+    while let Some(item) = items.next() {
+        if item.starts_with(['+', '-']) {
+            limits.push(Value::Float(item.parse().map_err(|_| no_number("a deviation", item))?));
+            continue;
+        }
+        let letters = item.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(item.len());
+        let (name, number) = item.split_at(letters);
+        let is_fit = number.len() <= 2 && number.parse::<u8>().is_ok() && name.len() <= 2;
+        let mut next = || if number.is_empty() { items.next().unwrap_or_default() } else { number };
+        if let Some((_, key)) = SIZES.iter().find(|(short, _)| *short == name) {
+            // 50H7 is a size with its fit.
+            let number = next();
+            let fit = number.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(number.len());
+            let (number, fit) = number.split_at(fit);
+            table.insert((*key).to_string(), value(key, number).ok_or_else(|| no_number(name, number))?);
+            if !fit.is_empty() {
+                table.insert("tolerance_mm".to_string(), Value::String(fit.to_string()));
+            }
+            continue;
+        }
+        match name {
+            "X" | "Z" => place.push(format!("{name}{}", next())),
+            "FROM" | "TO" => {
+                let z = next().trim_start_matches('Z');
+                table.insert(name.to_ascii_lowercase(), Value::String(format!("Z{z}")));
+            }
+            "TOL" => {
+                let number = next();
+                let both = value("tolerance_mm", number).ok_or_else(|| no_number(name, number))?;
+                table.insert("tolerance_mm".to_string(), both);
+            }
+            "NAME" => {
+                table.insert("name".to_string(), Value::String(next().to_string()));
+            }
+            _ if is_fit => {
+                table.insert("tolerance_mm".to_string(), Value::String(item.to_string()));
+            }
+            _ => {
+                let known = SIZES.iter().map(|(short, _)| *short);
+                let known = known.chain(["X", "Z", "FROM", "TO", "TOL", "NAME"]);
+                let hint = nearest(name, known.clone()).map_or_else(
+                    || format!("known are {}, a fit, +0.02 -0.01", known.collect::<Vec<_>>().join(" ")),
+                    |near| format!("did you mean {near}?"),
+                );
+                return Err(format!("{item} is not known here; {hint}"));
+            }
+        }
+    }
+    if !place.is_empty() {
+        table.insert("at".to_string(), Value::String(place.join(" ")));
+    }
+    if !limits.is_empty() {
+        table.insert("tolerance_mm".to_string(), Value::Array(limits));
+    }
+    if table.contains_key("diameter_mm")
+        && let Some(Value::String(fit)) = table.get_mut("tolerance_mm")
+    {
+        *fit = fit.to_ascii_lowercase();
+    }
+    Ok(table)
 }
 
 fn value(key: &str, number: &str) -> Option<Value> {
@@ -238,6 +335,42 @@ mod tests {
     }
 
     #[test]
+    fn sizes_are_written_as_in_a_drawing() {
+        let comments = pieces(&[
+            "SETUP MEASURE D50 Z-10 H7",
+            "SETUP MEASURE BORE 20H7 Z-10 NAME SEAT",
+            "SETUP MEASURE L32 FROM0 TO-32 TOL0.1",
+            "setup measure w4 x25 z-9 +0.1/-0.05",
+            "SETUP MEASURE D40JS6, Z = -30",
+            "SETUP MEASURE LEAD1.5 Z-5",
+        ]);
+        let file = "[[measure]]\nat = \"Z-1\"\nwall_mm = 3\n";
+        let setup = Setup::with_comments(file, comments).expect("a setup");
+        let measures = setup.measures().expect("sizes");
+        assert_eq!(measures.len(), 7);
+        let limits: Vec<_> = measures.iter().map(|measure| measure.deviations_mm).collect();
+        assert_eq!(limits[..3], [None, Some((0.0, -0.025)), Some((0.021, 0.0))]);
+        assert_eq!(limits[3..], [Some((0.1, -0.1)), Some((0.1, -0.05)), Some((0.008, -0.008)), None]);
+        assert_eq!(measures[2].name.as_deref(), Some("SEAT"));
+        let quantity = |index: usize| measures[index].quantity;
+        assert_eq!(quantity(3), crate::Quantity::Length { from: 0.0, to: -32.0 });
+        assert_eq!(quantity(4), crate::Quantity::Width { diameter_mm: 25.0, near_z: Some(-9.0) });
+        // What the key refuses is refused by its name.
+        let wrong = Setup::with_comments("", pieces(&["SETUP MEASURE D50 Z-10 X7"])).expect_err("refused");
+        assert!(wrong.message.starts_with("measure.1."), "{wrong:?}");
+        let wrong = Setup::with_comments("", pieces(&["SETUP MEASURE D50Z7 Z-10"])).expect_err("refused");
+        assert!(wrong.message.contains("z7"), "{wrong:?}");
+        let setup = Setup::with_comments("", pieces(&["SETUP BAR L600 D30 GUIDED"])).expect("a setup");
+        assert_eq!(setup.bar.expect("a bar").behind_mm, Some(600.0));
+        let chuck = pieces(&["SETUP STOCK D50 L80", "SETUP CHUCK RPM4000 FORCE30 MAXFORCE60"]);
+        let chuck = Setup::with_comments("", chuck).expect("a setup").chuck.expect("a chuck");
+        assert_eq!((chuck.grip_force_kn, chuck.grip_force_max_kn), (Some(30.0), Some(60.0)));
+        let tool = pieces(&["SETUP TOOL 2 CUT-OFF W3 REAR UP"]);
+        let tools = Setup::with_comments("", tool).expect("a setup").tools().expect("tools");
+        assert_eq!(tools[&2].turn, Some(crate::CuttingTurn::CounterClockwise));
+    }
+
+    #[test]
     fn other_remarks_are_left_alone_and_wrong_ones_refused() {
         for remark in
             ["SETUPS", "SETUP", "SET UP", "ROUGHING", "SETUP-SHEET 4", "SETUP WORK 54", "SETUP TOOL LIST", ""]
@@ -255,6 +388,11 @@ mod tests {
             ("SETUP TOOL 1 CNMG12", "not known here"),
             ("SETUP TOOL 1 TIP3.5", "needs a number"),
             ("SETUP DENY", "followed by"),
+            ("SETUP MEASURE DIA50 Z-10", "not known here"),
+            ("SETUP MEASURE D50 Z-10 MAYOR3", "did you mean MAJOR?"),
+            ("SETUP MEASURE D Z-10", "needs a number"),
+            ("SETUP MEASURE D50 Z-10 +x", "needs a number"),
+            ("SETUP BAR L600 GUIDE", "did you mean GUIDED?"),
         ] {
             let fault = setup_comment(comment).expect(comment).expect_err(comment);
             assert!(fault.contains(why), "{comment}: {fault}");

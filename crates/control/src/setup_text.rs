@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use crate::setup::typed;
 use crate::{
-    CheckSwitches, Chuck, Language, MeasureEntry, OffsetRow, OutlinePoint, Setup, Stock, Tailstock,
+    Bar, CheckSwitches, Chuck, Language, MeasureEntry, OffsetRow, OutlinePoint, Setup, Stock, Tailstock,
     ThreadRecord, ToolEntry,
 };
 
@@ -82,6 +82,17 @@ fn chuck_lines(chuck: &Chuck) -> Vec<Line> {
         ("diameter_mm", Some(number(chuck.diameter_mm))),
         ("length_mm", Some(number(chuck.length_mm))),
         ("rpm_max", chuck.rpm_max.map(|rpm| rpm.to_string())),
+        ("grip_force_kn", chuck.grip_force_kn.map(number)),
+        ("grip_force_max_kn", chuck.grip_force_max_kn.map(number)),
+    ])
+}
+
+fn bar_lines(bar: &Bar) -> Vec<Line> {
+    given([
+        ("behind_mm", bar.behind_mm.map(number)),
+        ("diameter_mm", bar.diameter_mm.map(number)),
+        ("bore_mm", bar.bore_mm.map(number)),
+        ("end", Some(text(bar.end.word()))),
     ])
 }
 
@@ -140,6 +151,7 @@ fn tool_lines(tool: &ToolEntry) -> Vec<Line> {
         ("entering_angle_deg", tool.entering_angle_deg.map(number)),
         ("hand", tool.hand.map(|hand| text(hand.word()))),
         ("post", tool.post.map(|post| text(post.word()))),
+        ("insert_faces", tool.insert_faces.map(|way| text(way.word()))),
         ("nose_radius_mm", tool.nose_radius_mm.map(number)),
         ("tip", tool.tip.map(|tip| tip.to_string())),
         ("width_mm", tool.width_mm.map(number)),
@@ -261,6 +273,9 @@ impl Setup {
         if let Some(chuck) = &self.chuck {
             writer.part("chuck", chuck_lines(chuck));
         }
+        if let Some(bar) = &self.bar {
+            writer.part("bar", bar_lines(bar));
+        }
         if let Some(tailstock) = &self.tailstock {
             writer.part("tailstock", tailstock_lines(tailstock));
         }
@@ -304,13 +319,14 @@ mod tests {
     /// A setup that says everything there is to say about stock, workholding and tools.
     const WHOLE: &str = "[stock]\nmaterial = \"45\"\ndiameter_mm = 50\nbore_mm = 10.5\nlength_mm = 80\nface_mm = 1\n\
         [chuck]\ngrip = \"outside\"\ngrip_mm = 25\njaw_z_mm = -54\njaw_length_mm = 30\njaw_height_mm = 20\n\
-        diameter_mm = 160\nlength_mm = 80\nrpm_max = 4500\n\
+        diameter_mm = 160\nlength_mm = 80\nrpm_max = 4500\ngrip_force_kn = 30\ngrip_force_max_kn = 60\n\
+        [bar]\nbehind_mm = 600\ndiameter_mm = 50\nbore_mm = 10.5\nend = \"guided\"\n\
         [tailstock]\npoint_z_mm = -4\npoint_angle_deg = 60\ncentre_mm = 20\ncentre_length_mm = 50\nquill_mm = 60\n\
         quill_length_mm = 100\n\
         [thread-repair]\nx = 30\nz = -12.5\nangle_deg = 90.25\n\
         [checks]\nallow = [\"tool-offset-differs\"]\ndeny = [\"stop-in-cut\", \"T095\"]\n\
         [tools.1]\nname = \"rough \\\"A\\\"\"\nkind = \"turning\"\nside = \"outside\"\ninsert = \"CNMG120408\"\n\
-        holder = \"PCLNR2525M12\"\nentering_angle_deg = 95\nhand = \"right\"\npost = \"front\"\nnose_radius_mm = 0.8\n\
+        holder = \"PCLNR2525M12\"\nentering_angle_deg = 95\nhand = \"right\"\npost = \"front\"\ninsert_faces = \"up\"\nnose_radius_mm = 0.8\n\
         tip = 3\nlength_mm = 150\nshank_mm = 25\n\
         [tools.10]\nkind = \"grooving\"\nwidth_mm = 3\nreach_mm = 15\nclearance_deg = 0.5\n\
         outline = [{ x = 0, z = 0 }, { x = 0, z = 3 }, { x = 9, z = 3, r = 9, turn = \"ccw\" }, { x = 9, z = 0 }]\n\
@@ -356,6 +372,7 @@ mod tests {
         add("stock", stock_lines(whole.stock.as_ref().expect("stock")));
         add("stock", stock_lines(forging.stock.as_ref().expect("stock")));
         add("chuck", chuck_lines(whole.chuck.as_ref().expect("chuck")));
+        add("bar", bar_lines(whole.bar.as_ref().expect("a bar")));
         add("tailstock", tailstock_lines(whole.tailstock.as_ref().expect("tailstock")));
         add("thread-repair", record_lines(whole.thread_repair.as_ref().expect("a record")));
         add("checks", check_lines(&whole.checks));

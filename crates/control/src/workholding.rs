@@ -1,7 +1,12 @@
-//! What holds the work: chuck and tailstock, as outlines that no tool may touch.
+//! What holds the work: chuck and tailstock, as outlines that no tool may touch; how fast chuck and bar may turn.
 
 use serde::Deserialize;
 use turnwright_geometry::{Bounds, Outline, OutlineFault, Point};
+
+use crate::{Material, Stock};
+
+/// Speed of sound along a steel bar, √(E/ρ) with 206 GPa and 7.85 g/cm³; counts where no material is named.
+const STEEL_M_PER_S: f64 = 5_123.0;
 
 /// Where the jaws grip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -44,6 +49,10 @@ pub struct Chuck {
     pub length_mm: f64,
     /// The fastest it may turn.
     pub rpm_max: Option<u32>,
+    /// What all jaws together grip with while it stands, as it is set, kN.
+    pub grip_force_kn: Option<f64>,
+    /// The greatest that it can be set to, kN; left out: what it is set to.
+    pub grip_force_max_kn: Option<f64>,
 }
 
 impl Default for Chuck {
@@ -57,7 +66,109 @@ impl Default for Chuck {
             diameter_mm: 200.0,
             length_mm: 90.0,
             rpm_max: None,
+            grip_force_kn: None,
+            grip_force_max_kn: None,
         }
+    }
+}
+
+/// Share of the greatest gripping force that centrifugal force may take at the rated speed of a chuck: EN 1550 rates
+/// them so.
+const LOSS_AT_RATED_SPEED: f64 = 2.0 / 3.0;
+
+/// Share of the gripping force at standstill that is left at least, by the same rule.
+const GRIP_LEFT_MIN: f64 = 1.0 / 3.0;
+
+/// How the grip of a chuck gets weaker with speed. EN 1550: at the rated speed centrifugal force takes two thirds of the
+/// greatest gripping force; it grows with the square of the speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GripLaw {
+    set_kn: f64,
+    max_kn: f64,
+    rated_rpm: f64,
+}
+
+impl GripLaw {
+    /// What is left of the grip at a speed, kN.
+    pub fn left_kn(&self, rpm: f64) -> f64 {
+        (self.set_kn - LOSS_AT_RATED_SPEED * self.max_kn * (rpm / self.rated_rpm).powi(2)).max(0.0)
+    }
+
+    /// Up to this speed a third of the grip at standstill is left.
+    pub fn rpm_max(&self) -> f64 {
+        let share = (1.0 - GRIP_LEFT_MIN) * self.set_kn / (LOSS_AT_RATED_SPEED * self.max_kn);
+        self.rated_rpm * share.sqrt()
+    }
+}
+
+/// How the end of a bar behind the spindle is held.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BarEnd {
+    /// Not at all.
+    #[default]
+    Free,
+    /// In a bush or a bar feeder, free to turn.
+    Guided,
+}
+
+impl BarEnd {
+    /// Both, with the words of setup files.
+    pub const ALL: [(Self, &'static str); 2] = [(Self::Free, "free"), (Self::Guided, "guided")];
+
+    /// The word of setup files.
+    pub fn word(self) -> &'static str {
+        Self::ALL.iter().find(|(end, _)| *end == self).map_or("", |(_, word)| word)
+    }
+
+    /// First root of the frequency equation of a beam that is clamped at the spindle: cos λ cosh λ = -1 for a free end,
+    /// tan λ = tanh λ for a guided one.
+    const fn root(self) -> f64 {
+        match self {
+            Self::Free => 1.875_104_068_711_961,
+            Self::Guided => 3.926_602_312_047_919,
+        }
+    }
+}
+
+/// `[bar]` of a setup file: what stands out behind the spindle.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Bar {
+    /// From where it is held last to its end, mm.
+    pub behind_mm: Option<f64>,
+    /// Its diameter, mm; left out: that of the stock.
+    pub diameter_mm: Option<f64>,
+    /// Its bore, mm; left out: that of the stock.
+    pub bore_mm: Option<f64>,
+    /// How its end is held.
+    pub end: BarEnd,
+}
+
+impl Bar {
+    /// The speed at which it whips: the first bending frequency of a beam after Euler and Bernoulli, once a turn,
+    /// n = 60 λ² / 2π L² · √(E/ρ) · √(D² + d²) / 4.
+    ///
+    /// # Errors
+    /// The key that is wrong, and why.
+    pub fn critical_rpm(&self, stock: Option<&Stock>, material: Option<&Material>) -> Result<f64, Fault> {
+        let size = |key, own: Option<f64>, of_stock: Option<f64>| match own.or(of_stock) {
+            Some(size) if size.is_finite() && size > 0.0 && size <= 10_000.0 => Ok(size),
+            Some(_) => Err((key, "must be greater than zero".to_string())),
+            None => Err((key, "is needed".to_string())),
+        };
+        let length_m = size("behind_mm", self.behind_mm, None)? / 1e3;
+        let of_stock = stock.and_then(|stock| stock.diameter_mm);
+        let diameter_m = size("diameter_mm", self.diameter_mm, of_stock)? / 1e3;
+        let bore_mm = self.bore_mm.or(stock.and_then(|stock| stock.bore_mm)).unwrap_or(0.0);
+        if !(bore_mm >= 0.0 && bore_mm / 1e3 < diameter_m) {
+            return Err(("bore_mm", "leaves nothing of the bar".to_string()));
+        }
+        let gyration_m = diameter_m.hypot(bore_mm / 1e3) / 4.0;
+        let speed_of_sound = material.map_or(STEEL_M_PER_S, Material::speed_of_sound_m_per_s);
+        let root = self.end.root();
+        let rad_per_s = root * root * speed_of_sound * gyration_m / (length_m * length_m);
+        Ok(rad_per_s * 30.0 / std::f64::consts::PI)
     }
 }
 
@@ -116,6 +227,35 @@ fn no_shape(key: &'static str) -> impl Fn(OutlineFault) -> Fault {
 }
 
 impl Chuck {
+    /// How its grip gets weaker with speed; nothing when nobody says how strong it is, or when it grips in a bore: there
+    /// speed presses the jaws outwards.
+    ///
+    /// # Errors
+    /// The key that is wrong, and why.
+    pub fn grip_law(&self) -> Result<Option<GripLaw>, Fault> {
+        let forces = [("grip_force_kn", self.grip_force_kn), ("grip_force_max_kn", self.grip_force_max_kn)];
+        for (key, force) in forces {
+            if force.is_some_and(|force| !(force.is_finite() && force > 0.0 && force <= 10_000.0)) {
+                return Err((key, "must be greater than zero".to_string()));
+            }
+        }
+        let Some(set_kn) = self.grip_force_kn else {
+            return match self.grip_force_max_kn {
+                Some(_) => Err(("grip_force_max_kn", "says nothing without grip_force_kn".to_string())),
+                None => Ok(None),
+            };
+        };
+        let Some(rated) = self.rpm_max else {
+            return Err(("grip_force_kn", "needs rpm_max, the rated speed of the chuck".to_string()));
+        };
+        let max_kn = self.grip_force_max_kn.unwrap_or(set_kn);
+        if max_kn < set_kn {
+            return Err(("grip_force_max_kn", "is less than what the chuck is set to".to_string()));
+        }
+        let law = GripLaw { set_kn, max_kn, rated_rpm: f64::from(rated) };
+        Ok((self.grip == Grip::Outside).then_some(law))
+    }
+
     /// Jaw and body around stock of this half-section.
     ///
     /// # Errors
@@ -131,6 +271,7 @@ impl Chuck {
         if self.rpm_max == Some(0) {
             return Err(("rpm_max", "must be greater than zero".to_string()));
         }
+        self.grip_law()?;
         if self.jaw_z_mm.is_some_and(|z| !(z.is_finite() && z.abs() <= 100_000.0)) {
             return Err(("jaw_z_mm", "is no place".to_string()));
         }
@@ -262,6 +403,47 @@ mod tests {
     }
 
     #[test]
+    fn grip_is_lost_with_the_square_of_the_speed() {
+        let chuck = Chuck { rpm_max: Some(4000), grip_force_kn: Some(60.0), ..Chuck::default() };
+        let law = chuck.grip_law().expect("a law").expect("a force");
+        // A third is left at the rated speed: that is what rates it.
+        assert!((law.left_kn(4000.0) - 20.0).abs() < 1e-12 && (law.rpm_max() - 4000.0).abs() < 1e-9);
+        assert!((law.left_kn(2000.0) - 50.0).abs() < 1e-12);
+        // Set to a quarter, it may turn half as fast.
+        let gently = Chuck { grip_force_kn: Some(15.0), grip_force_max_kn: Some(60.0), ..chuck.clone() };
+        let law = gently.grip_law().expect("a law").expect("a force");
+        assert!((law.rpm_max() - 2000.0).abs() < 1e-9 && (law.left_kn(2000.0) - 5.0).abs() < 1e-12);
+        assert_eq!(law.left_kn(4000.0), 0.0);
+        let inside = Chuck { grip: Grip::Inside, ..chuck };
+        assert_eq!(inside.grip_law(), Ok(None));
+        assert_eq!(Chuck::default().grip_law(), Ok(None));
+    }
+
+    #[test]
+    fn a_bar_whips_at_its_first_bending_frequency() {
+        let bar = Bar { behind_mm: Some(1000.0), diameter_mm: Some(50.0), ..Bar::default() };
+        // 3.516 · 5123 m/s · 12.5 mm / 1 m² = 225.2 1/s.
+        let rpm = bar.critical_rpm(None, None).expect("a speed");
+        assert!((rpm - 2150.0).abs() < 2.0, "{rpm}");
+        // Half as long, four times as fast; guided, (3.9266 / 1.8751)² = 4.385 times.
+        let short = Bar { behind_mm: Some(500.0), ..bar.clone() }.critical_rpm(None, None).expect("a speed");
+        assert!((short / rpm - 4.0).abs() < 1e-12);
+        let guided = Bar { end: BarEnd::Guided, ..bar.clone() }.critical_rpm(None, None).expect("a speed");
+        assert!((guided / rpm - 4.385).abs() < 1e-3);
+        // A tube is stiffer for its mass; brass is softer for its.
+        let tube = Bar { bore_mm: Some(30.0), ..bar.clone() }.critical_rpm(None, None).expect("a speed");
+        assert!((tube / rpm - 34_f64.sqrt() / 5.0).abs() < 1e-12);
+        let brass = crate::materials::material("H59").expect("brass");
+        let softer = bar.critical_rpm(None, Some(brass)).expect("a speed");
+        assert!(softer < 0.75 * rpm && softer > 0.6 * rpm, "{softer}");
+        let fault = |bar: Bar| bar.critical_rpm(None, None).expect_err("refused").0;
+        assert_eq!(fault(Bar { behind_mm: None, ..bar.clone() }), "behind_mm");
+        assert_eq!(fault(Bar { behind_mm: Some(-3.0), ..bar.clone() }), "behind_mm");
+        assert_eq!(fault(Bar { diameter_mm: None, ..bar.clone() }), "diameter_mm");
+        assert_eq!(fault(Bar { bore_mm: Some(50.0), ..bar }), "bore_mm");
+    }
+
+    #[test]
     fn what_cannot_hold_is_refused_with_the_key() {
         let chuck = |change: fn(&mut Chuck)| {
             let mut chuck = Chuck::default();
@@ -272,6 +454,13 @@ mod tests {
         assert_eq!(chuck(|chuck| chuck.jaw_height_mm = -1.0), "jaw_height_mm");
         assert_eq!(chuck(|chuck| chuck.diameter_mm = f64::NAN), "diameter_mm");
         assert_eq!(chuck(|chuck| chuck.grip = Grip::Inside), "grip");
+        assert_eq!(chuck(|chuck| chuck.grip_force_kn = Some(0.0)), "grip_force_kn");
+        // The rated speed is needed, and the rating is no less than what is set.
+        assert_eq!(chuck(|chuck| chuck.grip_force_kn = Some(20.0)), "grip_force_kn");
+        assert_eq!(chuck(|chuck| chuck.grip_force_max_kn = Some(20.0)), "grip_force_max_kn");
+        let weak = Chuck { rpm_max: Some(3000), grip_force_kn: Some(30.0), ..Chuck::default() };
+        let weak = Chuck { grip_force_max_kn: Some(20.0), ..weak };
+        assert_eq!(weak.outlines(Some(&bar())).expect_err("refused").0, "grip_force_max_kn");
         assert_eq!(chuck(|chuck| chuck.rpm_max = Some(0)), "rpm_max");
         assert_eq!(chuck(|chuck| chuck.jaw_z_mm = Some(f64::INFINITY)), "jaw_z_mm");
         assert_eq!(Chuck::default().outlines(None).expect_err("refused").0, "jaw_z_mm");

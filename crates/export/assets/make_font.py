@@ -20,7 +20,7 @@ TEXTS = HERE / "../../../data/report-texts.json"
 WORDS = HERE / "../../../data/texts.toml"
 IN_PICTURES = ("diff-", "cutting-", "target-", "list-comma", "colon", "pass-")
 FAMILY = "Turnwright Sans"
-SIGNS = "⌀−·→←↑↓°±×…–—“”‘’、。，：；（）"
+SIGNS = "⌀▷∠−·→←↑↓°±×…–—“”‘’、。，：；（）"
 PART_NAMES = (
     "零件图号名称轴套盘螺母栓丝杆钉法兰端盖齿轮毛坯棒料外圆内孔面槽倒角圆弧锥度球头粗精车镗钻铰切断割退刀"
     "第一二三四五六七八九十件次道序夹装正反左右前后上下大小长短高低新旧版本练习题测试示例比赛考试实训作业加工"

@@ -3,12 +3,15 @@
 //! In: the finished section, the same without its threads, and what is remembered of them. Out: loops of lines and arcs
 //! in which each thread is its crest, and the sizes that a drawing would have. X is a radius unless a name says diameter.
 
+mod details;
+mod metric;
 mod thread;
 
 use turnwright_geometry::Segment;
 use turnwright_stock::Section;
 use turnwright_stock::machining::ThreadMark;
 
+pub use self::details::{Detail, DetailKind, taper_text};
 pub use self::thread::Thread;
 
 /// Cylinders, faces and threads that are told; the longest and widest first.
@@ -34,6 +37,8 @@ pub struct PartShape {
     pub faces: Vec<f64>,
     /// Its threads, from the front.
     pub threads: Vec<Thread>,
+    /// Radii, chamfers and tapers, the longest edges first.
+    pub details: Vec<Detail>,
     /// Greatest diameter, mm.
     pub diameter_mm: f64,
     /// From the back to the front, mm.
@@ -51,6 +56,13 @@ pub struct Cylinder {
     pub z: (f64, f64),
     /// A bore.
     pub is_inside: bool,
+    /// It is the bottom of a groove, so wide at its mouth.
+    pub groove_mm: Option<f64>,
+}
+
+/// Thousandths of a millimetre, without zeros that say nothing.
+pub fn thousandths(value: f64) -> String {
+    ((value * 1e3).round() / 1e3 + 0.0).to_string()
 }
 
 /// What the tool of a thread cut where no thread is to be seen, into a shoulder perhaps, is no matter of convention.
@@ -86,6 +98,8 @@ impl PartShape {
         }
         shape.threads.sort_by(|a, b| b.z.1.total_cmp(&a.z.1));
         shape.find_sizes();
+        shape.find_grooves();
+        shape.find_details();
         Some(shape)
     }
 
@@ -110,7 +124,7 @@ impl PartShape {
             if dx.abs() <= LEVEL_MM && dz.abs() >= least_length && edge.start.x > LEVEL_MM {
                 let z = (edge.start.z.min(edge.end.z), edge.start.z.max(edge.end.z));
                 let diameter_mm = edge.start.x + edge.end.x;
-                self.cylinders.push(Cylinder { diameter_mm, z, is_inside: dz > 0.0 });
+                self.cylinders.push(Cylinder { diameter_mm, z, is_inside: dz > 0.0, groove_mm: None });
             } else if dz.abs() <= LEVEL_MM && dx.abs() >= least_step {
                 faces.push((edge.start.z, dx.abs()));
             }

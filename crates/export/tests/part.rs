@@ -163,10 +163,61 @@ fn the_drawing_is_a_picture_by_itself() {
             assert_eq!(of_class(class).len(), 1, "{class}");
         }
         let diameters = of_class("diameter");
-        for text in ["⌀10", "⌀20 × 2", "⌀40"] {
+        for text in ["⌀10", "⌀40"] {
             assert!(diameters.iter().any(|one| one == text), "{diameters:?}");
         }
         assert_eq!(of_class("length"), ["15", "25", "60"]);
         assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("href"));
+    }
+}
+
+/// A text of the drawing: its middle, its baseline, half its width.
+fn boxes(svg: &str) -> Vec<(f64, f64, f64, String)> {
+    let tree = roxmltree::Document::parse(svg).expect("XML");
+    let texts = tree.descendants().filter(|node| node.attribute("class") == Some("diameter"));
+    let number = |node: &roxmltree::Node<'_, '_>, name: &str| {
+        node.attribute(name).and_then(|text| text.parse::<f64>().ok())
+    };
+    texts
+        .map(|node| {
+            let text = node.text().unwrap_or_default().to_string();
+            let half = text.chars().count() as f64 * 14.0 * 0.31;
+            (number(&node, "x").expect("x"), number(&node, "y").expect("y"), half, text)
+        })
+        .collect()
+}
+
+#[test]
+fn labels_are_beside_each_other_and_off_the_part() {
+    // Shafts of ever more steps with chamfers, until there is no room for all.
+    for steps in [1, 3, 8, 20, 40] {
+        let mut corners = vec![(8.0, 0.0)];
+        for step in 0..steps {
+            let (x, z) = (10.0 + 2.0 * f64::from(step), -7.0 * f64::from(step));
+            corners.extend([(x - 1.0, z), (x, z - 1.0), (x, z - 7.0)]);
+        }
+        corners.extend([(8.0, -7.0 * f64::from(steps))]);
+        let section = Section::new(&polygon(&corners)).expect("a section");
+        let shape = PartShape::new(&section, &section, &[]).expect("a part");
+        let drawing =
+            PartDrawing { shape: &shape, stock: None, title: String::new(), language: Language::English };
+        let svg = write_part_svg(&drawing);
+        let boxes = boxes(&svg);
+        assert!(boxes.len() >= 2, "{boxes:?}");
+        for (index, one) in boxes.iter().enumerate() {
+            assert!(one.0 - one.2 >= -1e-6 && one.0 + one.2 <= 1200.0 + 1e-6, "{one:?}");
+            // The part and the stock begin at 156 px; bores have their rows below.
+            assert!(one.1 < 156.0 - 30.0 || one.1 > 300.0, "{one:?}");
+            for other in &boxes[..index] {
+                let is_beside = (one.0 - other.0).abs() >= one.2 + other.2 - 1e-6;
+                assert!(is_beside || (one.1 - other.1).abs() >= 20.0, "{one:?} {other:?}");
+            }
+        }
+        // What a drawing is made by is there: the smallest and the greatest diameter, and the chamfers.
+        let all = boxes.iter().map(|one| one.3.as_str()).collect::<Vec<_>>();
+        assert!(all.contains(&"⌀16"), "{all:?}");
+        if steps > 1 && steps < 20 {
+            assert!(all.contains(&format!("1×45° ({steps}×)").as_str()), "{all:?}");
+        }
     }
 }

@@ -118,6 +118,35 @@ impl ToolPost {
     }
 }
 
+/// Which way the rake face of an insert looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum InsertFacing {
+    /// Up.
+    Up,
+    /// Down.
+    Down,
+}
+
+impl InsertFacing {
+    /// Both, with the words of setup files.
+    pub const ALL: [(Self, &'static str); 2] = [(Self::Up, "up"), (Self::Down, "down")];
+
+    /// The word of setup files.
+    pub fn word(self) -> &'static str {
+        Self::ALL.iter().find(|(way, _)| *way == self).map_or("", |(_, word)| word)
+    }
+}
+
+/// Which way the spindle must turn for a tool to cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CuttingTurn {
+    /// Clockwise, seen from behind the spindle: the work comes down in front and goes up behind.
+    Clockwise,
+    /// The other way.
+    CounterClockwise,
+}
+
 /// An entry `[tools.N]` of a setup file; `data/setup-keys.toml` explains each key. What is left out follows from the
 /// designations, else from the kind.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -132,6 +161,7 @@ pub struct ToolEntry {
     pub entering_angle_deg: Option<f64>,
     pub hand: Option<Hand>,
     pub post: Option<ToolPost>,
+    pub insert_faces: Option<InsertFacing>,
     pub nose_radius_mm: Option<f64>,
     pub tip: Option<u8>,
     pub width_mm: Option<f64>,
@@ -171,6 +201,8 @@ pub struct Tool {
     pub body: Option<Outline>,
     /// The edges behind the nose of a turning insert; none where nobody says how it stands in its holder.
     pub flanks: Vec<Flank>,
+    /// Which way the spindle must turn, when post and insert or the hand of the holder tell.
+    pub turn: Option<CuttingTurn>,
 }
 
 /// An edge behind the nose of a turning insert: it must be clear of the work that stays. Neutral tools have two.
@@ -294,6 +326,7 @@ impl ToolEntry {
         let drawing = Drawing { entry: self, kind, side, nose_mm, stance, insert, holder };
         let (cutting, body) = drawing.outlines()?;
         let flanks = drawing.flanks();
+        let turn = self.turn(kind, side, hand, drawing.holder.as_ref());
         let width_mm = match kind {
             ToolKind::Drilling | ToolKind::Tapping => self.diameter_mm,
             ToolKind::Grooving | ToolKind::CutOff => drawing.width_mm(),
@@ -313,7 +346,37 @@ impl ToolEntry {
             cutting,
             body,
             flanks,
+            turn,
         })
+    }
+
+    /// Which way the spindle must turn. In front the work comes down on an insert that looks up when the spindle turns
+    /// clockwise, behind it goes up. A right-hand holder that feeds to the chuck sits so on either post, and so does a
+    /// left-hand one that feeds away from it: each is the mirror of the other. A bar for back boring is not: of bars only
+    /// those that feed to the chuck are judged.
+    fn turn(
+        &self,
+        kind: ToolKind,
+        side: ToolSide,
+        hand: Hand,
+        holder: Option<&Holder>,
+    ) -> Option<CuttingTurn> {
+        use CuttingTurn::{Clockwise, CounterClockwise};
+        if let (Some(post), Some(facing)) = (self.post, self.insert_faces) {
+            return Some(match (post, facing) {
+                (ToolPost::Front, InsertFacing::Up) | (ToolPost::Rear, InsertFacing::Down) => Clockwise,
+                (ToolPost::Front, InsertFacing::Down) | (ToolPost::Rear, InsertFacing::Up) => {
+                    CounterClockwise
+                }
+            });
+        }
+        let is_judged = kind == ToolKind::Turning && (side == ToolSide::Outside || hand == Hand::Right);
+        let holder = holder.filter(|holder| is_judged && !holder.is_neutral)?;
+        match hand {
+            Hand::Right => Some(if holder.is_left { CounterClockwise } else { Clockwise }),
+            Hand::Left => Some(if holder.is_left { Clockwise } else { CounterClockwise }),
+            Hand::Neutral => None,
+        }
     }
 
     /// The kind that is named, else that of the insert.
@@ -681,6 +744,33 @@ mod tests {
             "kind = \"grooving\"\nwidth_mm = 3\n",
         ] {
             assert_eq!(tool(text).flanks, [], "{text}");
+        }
+    }
+
+    #[test]
+    fn the_spindle_turns_for_the_insert() {
+        use CuttingTurn::{Clockwise, CounterClockwise};
+        for (text, turn) in [
+            ("insert = \"CNMG120408\"\nholder = \"PCLNR2525M12\"\n", Some(Clockwise)),
+            ("insert = \"CNMG120408\"\nholder = \"PCLNL2525M12\"\n", Some(Clockwise)),
+            (
+                "insert = \"CNMG120408\"\nholder = \"PCLNL2525M12\"\nhand = \"right\"\n",
+                Some(CounterClockwise),
+            ),
+            ("insert = \"CCMT060204\"\nholder = \"S16Q-SCLCR06\"\n", Some(Clockwise)),
+            ("insert = \"CCMT060204\"\nholder = \"S16Q-SCLCR06\"\nhand = \"left\"\n", None),
+            ("insert = \"VBMT160404\"\nholder = \"SVVBN2525M16\"\n", None),
+            ("insert = \"CNMG120408\"\n", None),
+            ("insert = \"CNMG120408\"\ninsert_faces = \"up\"\n", None),
+            ("insert = \"CNMG120408\"\ninsert_faces = \"up\"\npost = \"front\"\n", Some(Clockwise)),
+            (
+                "kind = \"cut-off\"\nwidth_mm = 3\ninsert_faces = \"up\"\npost = \"rear\"\n",
+                Some(CounterClockwise),
+            ),
+            ("insert = \"16ER1.5ISO\"\ninsert_faces = \"down\"\npost = \"rear\"\n", Some(Clockwise)),
+            ("insert = \"16ER1.5ISO\"\ninsert_faces = \"down\"\npost = \"front\"\n", Some(CounterClockwise)),
+        ] {
+            assert_eq!(tool(text).turn, turn, "{text}");
         }
     }
 

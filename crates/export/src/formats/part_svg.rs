@@ -2,8 +2,9 @@
 //! cut from dash-dotted, and its main sizes.
 //!
 //! In: a [`PartShape`] and the outline of the stock. Out: one SVG text with nothing outside itself: chuck left, Z to
-//! the right, one scale for both. Diameters are pointed at from above (outside) and from below (bores), lengths are
-//! measured from the front face. What finds no room is left out; the sizes of the table are all there.
+//! the right, one scale for both. Diameters, grooves, threads, radii, chamfers and tapers are pointed at from above
+//! (outside) and from below (bores), lengths are measured from the front face. What finds no room is left out, details first;
+//! the sizes of the table are all there.
 
 use std::fmt::Write;
 
@@ -11,7 +12,7 @@ use turnwright_geometry::{Outline, Point, Segment};
 
 use super::svg::{FONT_FAMILY, escape_xml};
 use crate::Language;
-use crate::part::{PartShape, Thread};
+use crate::part::{PartShape, Thread, taper_text, thousandths};
 use crate::words::Words;
 
 /// Width of the drawing, and the least and greatest height of it.
@@ -19,9 +20,13 @@ const WIDTH_PX: f64 = 1200.0;
 const HEIGHT_PX: f64 = 800.0;
 
 const MARGIN_PX: f64 = 60.0;
-/// Above the part: heading and a row of diameters. Below it: a row of bores and the lengths.
-const TOP_PX: f64 = 120.0;
+/// Above the part: heading and two rows of what points at its outside. Below it: two rows for bores, and the lengths.
+const TOP_PX: f64 = 156.0;
 const ROW_PX: f64 = 26.0;
+/// From the part to the nearer row of texts: here the pointers bend to where they point.
+const BEND_PX: f64 = 46.0;
+/// Between texts, and between a text and the pointer of another.
+const GAP_PX: f64 = 5.0;
 const TEXT_PX: f64 = 14.0;
 
 /// Lengths that are drawn, the whole one included.
@@ -62,7 +67,9 @@ pub fn write_part_svg(drawing: &PartDrawing<'_>) -> String {
     let PartDrawing { shape, stock, .. } = *drawing;
     let words = Words::new(drawing.language);
     let lengths = lengths(shape);
-    let below_px = ROW_PX * (lengths.len() as f64 + 2.5);
+    let has_inside = pointers(shape, true).next().is_some();
+    let inside_px = if has_inside { BEND_PX + ROW_PX + TEXT_PX } else { 0.0 };
+    let below_px = inside_px + ROW_PX * (lengths.len() as f64 + 1.5);
     let of_stock = stock.map(Outline::bounds);
     let radius = of_stock.map_or(0.0, |stock| stock.max.x).max(shape.diameter_mm / 2.0).max(0.1);
     let back = of_stock.map_or(shape.z.0, |stock| stock.min.z.min(shape.z.0));
@@ -111,9 +118,9 @@ pub fn write_part_svg(drawing: &PartDrawing<'_>) -> String {
     for thread in &shape.threads {
         write_thread(&mut svg, &sheet, thread);
     }
-    write_diameters(&mut svg, &sheet, shape, (TOP_PX - 26.0, bottom_px + ROW_PX));
+    write_pointers(&mut svg, &sheet, shape, bottom_px);
     for (row, z) in lengths.iter().enumerate() {
-        let y = bottom_px + ROW_PX * (row as f64 + 2.5);
+        let y = bottom_px + inside_px + ROW_PX * (row as f64 + 1.5);
         write_length(&mut svg, &sheet, shape, (*z, shape.z.1), y);
     }
     svg.push_str("</svg>\n");
@@ -224,60 +231,118 @@ fn write_thread(svg: &mut String, sheet: &Sheet, thread: &Thread) {
 
 /// A text that points at a surface.
 struct Pointer {
-    at: (f64, f64),
+    at: Point,
     text: String,
+    /// Of two that have no room, the one with less of it goes.
+    weight: f64,
 }
 
-fn write_diameters(svg: &mut String, sheet: &Sheet, shape: &PartShape, rows: (f64, f64)) {
-    for (is_inside, row, side) in [(false, rows.0, 1.0), (true, rows.1, -1.0)] {
-        let of_cylinders =
-            shape.cylinders.iter().filter(|cylinder| cylinder.is_inside == is_inside).map(|one| {
-                let at = (sheet.x((one.z.0 + one.z.1) / 2.0), sheet.y(side * one.diameter_mm / 2.0));
-                Pointer { at, text: format!("⌀{}", mm(one.diameter_mm)) }
-            });
-        let of_threads = shape.threads.iter().filter(|thread| thread.is_inside == is_inside).map(|one| {
-            let at = (sheet.x((one.z.0 + one.z.1) / 2.0), sheet.y(side * one.crest_mm / 2.0));
-            Pointer { at, text: thread_text(one) }
-        });
-        let mut pointers: Vec<Pointer> = of_cylinders.chain(of_threads).collect();
-        pointers.sort_by(|a, b| a.at.0.total_cmp(&b.at.0));
-        // Each text beside the one before it; those that leave the sheet push the others back.
-        let mut places: Vec<f64> = Vec::new();
-        let mut free = 10.0;
-        for pointer in &pointers {
-            let half = half_width(&pointer.text);
-            let x = pointer.at.0.max(free + half);
-            places.push(x);
-            free = x + half + 10.0;
+/// What points at the outside, or at the bores.
+fn pointers(shape: &PartShape, is_inside: bool) -> impl Iterator<Item = Pointer> + '_ {
+    let of_cylinders = shape.cylinders.iter().filter(move |one| one.is_inside == is_inside).map(|one| {
+        let at = Point::new(one.diameter_mm / 2.0, (one.z.0 + one.z.1) / 2.0);
+        let diameter = format!("⌀{}", mm(one.diameter_mm));
+        let text = match one.groove_mm {
+            Some(width) => format!("{}×{diameter}", mm(width)),
+            None => diameter,
+        };
+        Pointer { at, text, weight: 1e6 + one.z.1 - one.z.0 }
+    });
+    let of_threads = shape.threads.iter().filter(move |one| one.is_inside == is_inside).map(|one| {
+        let at = Point::new(one.crest_mm / 2.0, (one.z.0 + one.z.1) / 2.0);
+        Pointer { at, text: thread_text(one), weight: f64::INFINITY }
+    });
+    let of_details = shape.details.iter().filter(move |one| one.is_inside == is_inside);
+    let of_details = of_details.map(|one| Pointer { at: one.place, text: one.text(), weight: one.length_mm });
+    of_cylinders.chain(of_threads).chain(of_details)
+}
+
+/// Places for texts in two rows that take turns, in their order along the part: none upon another, nor upon the pointer
+/// of another. `None` when they are too many for the width.
+fn places(pointers: &[(f64, f64)]) -> Option<Vec<f64>> {
+    // The least distance from a text to the one before it and to the one before that.
+    let next = |a: f64, b: f64| a.max(b) + GAP_PX;
+    let row = |a: f64, b: f64| a + b + 2.0 * GAP_PX;
+    let least = |places: &[f64], index: usize| {
+        let half = |index: usize| pointers[index].1;
+        let mut least = GAP_PX + half(index);
+        if index > 0 {
+            least = least.max(places[index - 1] + next(half(index - 1), half(index)));
         }
-        let mut free = WIDTH_PX - 10.0;
-        for (x, pointer) in places.iter_mut().zip(&pointers).rev() {
-            let half = half_width(&pointer.text);
-            *x = x.min(free - half);
-            free = *x - half - 10.0;
+        if index > 1 {
+            least = least.max(places[index - 2] + row(half(index - 2), half(index)));
         }
-        for (x, pointer) in places.iter().zip(&pointers).filter(|(x, _)| **x > 0.0) {
-            let (y_text, y_line) = if is_inside { (row + 5.0, row - 10.0) } else { (row, row + 5.0) };
-            let (to_x, to_y) = pointer.at;
+        least
+    };
+    let mut places: Vec<f64> = Vec::with_capacity(pointers.len());
+    for (index, (wanted, _)) in pointers.iter().enumerate() {
+        places.push(wanted.max(least(&places, index)));
+    }
+    // Those that leave the sheet push the others back.
+    for index in (0..places.len()).rev() {
+        let half = |index: usize| pointers[index].1;
+        let mut most = WIDTH_PX - GAP_PX - half(index);
+        if index + 1 < places.len() {
+            most = most.min(places[index + 1] - next(half(index), half(index + 1)));
+        }
+        if index + 2 < places.len() {
+            most = most.min(places[index + 2] - row(half(index), half(index + 2)));
+        }
+        places[index] = places[index].min(most);
+    }
+    places.iter().zip(pointers).all(|(place, (_, half))| place - half >= 0.0).then_some(places)
+}
+
+fn write_pointers(svg: &mut String, sheet: &Sheet, shape: &PartShape, bottom_px: f64) {
+    for is_inside in [false, true] {
+        let mut pointers: Vec<Pointer> = pointers(shape, is_inside).collect();
+        pointers.sort_by(|a, b| a.at.z.total_cmp(&b.at.z));
+        let found = loop {
+            let wanted: Vec<(f64, f64)> =
+                pointers.iter().map(|one| (sheet.x(one.at.z), half_width(&one.text))).collect();
+            if let Some(places) = places(&wanted) {
+                break places;
+            }
+            let weights = pointers.iter().enumerate().map(|(index, one)| (index, one.weight));
+            let lightest = weights.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(index, _)| index);
+            pointers.remove(lightest);
+        };
+        for (index, (x, pointer)) in found.iter().zip(&pointers).enumerate() {
+            let row = if index.is_multiple_of(2) { 0.0 } else { ROW_PX };
+            let side = if is_inside { -1.0 } else { 1.0 };
+            let (to_x, to_y) = (sheet.x(pointer.at.z), sheet.y(side * pointer.at.x));
+            // From the text straight to where the rows end, over to its place, and straight to the surface.
+            let (y_text, y_line, y_rows, y_part) = if is_inside {
+                let near = bottom_px + BEND_PX;
+                (near + row + TEXT_PX - 3.0, near + row, near - 4.0, bottom_px + 8.0)
+            } else {
+                let near = TOP_PX - BEND_PX;
+                (near - row, near - row + 5.0, near + 6.0, TOP_PX - 8.0)
+            };
             let _ = writeln!(
                 svg,
-                "<path d=\"M{x:.2} {y_line:.2}L{to_x:.2} {to_y:.2}\" stroke=\"#333\" stroke-width=\"0.8\" \
-                 marker-end=\"url(#arrow)\"/>\n\
-                 <text class=\"diameter\" x=\"{x:.2}\" y=\"{y_text:.2}\" text-anchor=\"middle\">{}</text>",
+                "<path d=\"M{x:.2} {y_line:.2}V{y_rows:.2}L{to_x:.2} {y_part:.2}V{to_y:.2}\" fill=\"none\" stroke=\"#333\" \
+                 stroke-width=\"0.8\" marker-end=\"url(#arrow)\"/>\n\
+                 <text class=\"diameter\" x=\"{x:.2}\" y=\"{y_text:.2}\" text-anchor=\"middle\" stroke=\"#fff\" \
+                 stroke-width=\"4\" paint-order=\"stroke\">{}</text>",
                 escape_xml(&pointer.text)
             );
         }
     }
 }
 
-/// The words of a thread: crest, lead, starts.
+/// The words of a thread: its name, when it is a metric one of the table, else its diameters and its lead; starts, taper.
 pub fn thread_text(thread: &Thread) -> String {
+    if let Some(name) = thread.name() {
+        return name;
+    }
     let starts = if thread.starts > 1 { format!(" ({}×)", thread.starts) } else { String::new() };
-    format!("⌀{} × {}{starts}", mm(thread.crest_mm), mm(thread.lead_mm))
+    let taper = thread.taper_deg().map_or_else(String::new, |angle| format!(" {}", taper_text(angle)));
+    format!("⌀{}/{} × {}{starts}{taper}", mm(thread.crest_mm), mm(thread.root_mm), mm(thread.lead_mm))
 }
 
 fn half_width(text: &str) -> f64 {
-    text.chars().count() as f64 * TEXT_PX * 0.3
+    text.chars().count() as f64 * TEXT_PX * 0.31
 }
 
 fn write_length(svg: &mut String, sheet: &Sheet, shape: &PartShape, z: (f64, f64), y: f64) {
@@ -305,5 +370,5 @@ fn write_length(svg: &mut String, sheet: &Sheet, shape: &PartShape, z: (f64, f64
 
 /// Thousandths of a millimetre, without zeros that say nothing.
 pub fn mm(value: f64) -> String {
-    ((value * 1e3).round() / 1e3 + 0.0).to_string()
+    thousandths(value)
 }

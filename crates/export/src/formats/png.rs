@@ -109,7 +109,7 @@ mod tests {
     fn the_font_has_every_character_of_the_texts_and_is_small() {
         let characters = skrifa::FontRef::new(FONT).expect("a font").charmap();
         let has = |c: char| characters.map(c).is_some();
-        assert!(has('A') && has('⌀') && has('\u{2212}') && !has('\u{1f600}'));
+        assert!(has('A') && has('⌀') && has('▷') && has('∠') && has('\u{2212}') && !has('\u{1f600}'));
         let texts: serde_json::Value = serde_json::from_str(REPORT_TEXTS).expect("JSON");
         for (key, entry) in texts.as_object().expect("an object") {
             for tag in ["en", "zh"] {

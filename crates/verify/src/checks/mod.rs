@@ -3,20 +3,24 @@
 //! One file a check; its head comment is the manual entry: the pattern, why it hurts, how to mend it. The interpreter
 //! warns of what one block shows by itself; a check follows the program, or needs the setup.
 
+mod bar_whip;
 mod chuck_speed;
 mod cycle_leads_away;
 mod drill_direction;
 mod feed_mode;
 mod feed_size;
+mod grip_force;
 mod groove_step;
 mod intermediate_point;
 mod offset_cancel;
 mod offset_number;
 mod overhang;
 mod preset_with_limit;
+mod spindle_turn;
 mod stop_in_cut;
 mod thread_speed;
 mod tool_change;
+mod turning_speeds;
 mod unfinished_figure;
 mod without_offset;
 
@@ -162,12 +166,15 @@ impl Checks {
             has_cut: false,
         };
         let of_moves: Vec<Box<dyn Check>> = vec![
+            Box::<bar_whip::BarWhip>::default(),
             Box::<cycle_leads_away::CycleLeadsAway>::default(),
             Box::<drill_direction::DrillDirection>::default(),
             Box::<feed_mode::FeedMode>::default(),
             Box::<feed_size::FeedSize>::default(),
+            Box::<grip_force::GripForce>::default(),
             Box::<groove_step::GrooveStep>::default(),
             Box::<intermediate_point::IntermediatePoint>::default(),
+            Box::<spindle_turn::SpindleTurn>::default(),
             Box::<stop_in_cut::StopInCut>::default(),
             Box::<thread_speed::ThreadSpeed>::default(),
             Box::<unfinished_figure::UnfinishedFigure>::default(),
