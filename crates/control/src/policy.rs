@@ -865,6 +865,13 @@ policies! {
         /// The axis is held at its limit and loses the lead; a warning says so.
         Warn,
     }
+    /// F of the codes that lead the spindle as an axis: rigid tapping and rigid threads.
+    led_spindle_feed: LedSpindleFeed {
+        /// In tapping a feed, by the speed a lead; in threads a lead without sign.
+        Plain,
+        /// The lead, in tapping too; a negative one is left-handed.
+        SignedLead,
+    }
     /// A thread while no spindle speed is commanded.
     thread_without_spindle: ThreadWithoutSpindle {
         /// Refused before the first pass.

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use turnwright_canon::{Command, CycleOrigin, OtherAxes, PathMode};
+use turnwright_canon::{Action, Command, CycleOrigin, OtherAxes, PathMode};
 use turnwright_control::{Control, Mode, Parameters, Setup, SetupFault, ThreadRecord};
 use turnwright_cycles::Element;
 use turnwright_diagnostics::{Diagnostic, Place, SourceId};
@@ -281,10 +281,12 @@ impl Interpreter {
             feed_mode: settings.feed_mode_at_power_on,
             feed: None,
             feed_is_lead: false,
-            path_mode: PathMode::default(),
+            has_run_out_words: false,
+            lead_is_left: false,
+            path_mode: settings.path_mode_at_power_on,
             lead_by_count: None,
             speed_mode: SpeedMode::Constant,
-            rpm: Default::default(),
+            rpm: settings.rpm_at_power_on,
             surface: SurfaceSpeed::from_m_per_min(0),
             rpm_max: None,
             spindle: Default::default(),
@@ -383,6 +385,9 @@ impl Interpreter {
         };
         if setup.machine.is_some() || setup.rates.contains_key("reference") {
             core.said.insert(("home-is-assumed", 0, 0));
+        }
+        if core.modal.path_mode != PathMode::default() {
+            core.emit(Action::PathMode(core.modal.path_mode));
         }
         core.modal.feed = core.initial_feed();
         core.modal.is_incremental = core.starts_incremental();

@@ -11,7 +11,7 @@ use crate::axes::Plane;
 use crate::compensation::CompensationSettings;
 use crate::functions::FunctionId;
 use crate::functions::hole::{HoleInForce, HoleSettings};
-use crate::functions::multi_thread::RunOutWords;
+use crate::functions::multi_thread::{RunOutWords, flank_infeed};
 use crate::in_force::InForce;
 use crate::offsets::{OffsetInForce, OffsetSettings};
 
@@ -65,6 +65,10 @@ pub(crate) struct Modal {
     pub(crate) feed: Option<Length>,
     /// A thread gave it: it is a lead.
     pub(crate) feed_is_lead: bool,
+    /// A thread block has had a run-out by words.
+    pub(crate) has_run_out_words: bool,
+    /// That lead is a left-handed one, of a code that leads the spindle.
+    pub(crate) lead_is_left: bool,
     pub(crate) path_mode: PathMode,
     /// The lead that threads per inch gave, until a thread has another.
     pub(crate) lead_by_count: Option<Length>,
@@ -149,6 +153,10 @@ pub(crate) struct Settings {
     pub(crate) gives_return_code: bool,
     /// Largest number of an M word.
     pub(crate) auxiliary_max: u32,
+    /// How moves meet before any code says it.
+    pub(crate) path_mode_at_power_on: PathMode,
+    /// Speed before the first S word.
+    pub(crate) rpm_at_power_on: Rpm,
     /// Of the spindle by parameter, in any mode and gear; `None` without.
     pub(crate) rpm_max: Option<Rpm>,
     /// Of gears 1 to 8; `None` without.
@@ -208,6 +216,8 @@ pub(crate) struct Settings {
     pub(crate) thread_run_out_words: RunOutWords,
     pub(crate) enhanced_thread_infeed: FlankInfeed,
     pub(crate) enhanced_thread_equal_steps: bool,
+    pub(crate) enhanced_thread_finishing_passes: Option<u32>,
+    pub(crate) enhanced_thread_starts: u32,
     pub(crate) cycle_stops_behind_moves: bool,
     pub(crate) corner_stops_single_block: bool,
     pub(crate) figure_check: bool,
@@ -308,6 +318,12 @@ impl Settings {
             second_auxiliary: second_auxiliary(parameters),
             gives_return_code: bit("return-code-to-machine"),
             auxiliary_max: 10u32.pow(count("auxiliary-digits").clamp(2, 8)) - 1,
+            path_mode_at_power_on: if bit("exact-stop-always") {
+                PathMode::ExactStop
+            } else {
+                PathMode::default()
+            },
+            rpm_at_power_on: Rpm(count("rpm-at-power-on").min(9_999)),
             rpm_max: rpm("spindle-maximum-rpm"),
             gear_rpm_max: [
                 rpm("gear-1-maximum-rpm"),
@@ -372,13 +388,11 @@ impl Settings {
             thread_infeed: FlankInfeed::WithCut,
             thread_starts: 1,
             thread_run_out_words: RunOutWords::default(),
-            enhanced_thread_infeed: match count("thread-flank-mode") {
-                0 => FlankInfeed::Centre,
-                1 => FlankInfeed::AgainstCut,
-                2 => FlankInfeed::WithCut,
-                _ => FlankInfeed::BothFlanks,
-            },
+            enhanced_thread_infeed: flank_infeed(count("thread-flank-mode"))
+                .unwrap_or(FlankInfeed::BothFlanks),
             enhanced_thread_equal_steps: count("thread-depth-mode") == 0,
+            enhanced_thread_finishing_passes: None,
+            enhanced_thread_starts: 1,
             cycle_stops_behind_moves: bit("cycle-single-block-element"),
             corner_stops_single_block: bit("corner-single-block"),
             figure_check: bit("figure-check"),

@@ -10,7 +10,7 @@
 //!
 //! Source: modal groups and their state after reset, part counter, both families.
 
-use turnwright_canon::{Action, PathMode, SpindleState};
+use turnwright_canon::{Action, SpindleState};
 use turnwright_control::policy::SpeedLimitAtReset;
 use turnwright_units::Length;
 
@@ -95,8 +95,8 @@ impl Core {
             self.modal.feed_mode = self.settings.feed_mode_at_power_on;
             self.modal.feed = self.initial_feed();
             self.modal.is_incremental = self.starts_incremental();
-            self.has_untold_path_mode |= self.modal.path_mode != PathMode::default();
-            self.modal.path_mode = PathMode::default();
+            self.has_untold_path_mode |= self.modal.path_mode != self.settings.path_mode_at_power_on;
+            self.modal.path_mode = self.settings.path_mode_at_power_on;
             self.modal.stroke_two_is_on = self.settings.stroke_two_at_power_on;
             self.with_new_zero(|core| core.transform = Transform::default());
         }
@@ -189,7 +189,7 @@ impl Interpreter {
             self.core.emit(Action::Relocate { to: self.core.tip, others: None });
         }
         if std::mem::take(&mut self.core.has_untold_path_mode) {
-            self.core.emit(Action::PathMode(PathMode::default()));
+            self.core.emit(Action::PathMode(self.core.modal.path_mode));
         }
         self.core.blocks_run = 0;
         self.core.cycle_moves = 0;

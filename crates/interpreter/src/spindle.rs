@@ -11,7 +11,7 @@
 
 use turnwright_canon::{Action, SpindleSpeed, SpindleState};
 use turnwright_control::Machine;
-use turnwright_syntax::Word;
+use turnwright_syntax::{Block, Word};
 use turnwright_units::{Feed, Rpm, SurfaceSpeed};
 
 use crate::machine::Core;
@@ -113,6 +113,26 @@ impl Core {
                 Rpm(free.max(f64::from(machine.rpm_min_surface)).min(limit).round() as u32)
             }
         }
+    }
+
+    /// How a spindle turns that the lead in force leads; threads per inch have no sign.
+    pub(crate) fn way_of_lead(&mut self, block: &Block) -> SpindleState {
+        if block.has(b'I') && !block.has(b'F') {
+            self.modal.lead_is_left = false;
+        }
+        if self.modal.lead_is_left { SpindleState::CounterClockwise } else { SpindleState::Clockwise }
+    }
+
+    /// Turns the spindle for a thread that leads it; true when it has to be stopped behind the thread.
+    pub(crate) fn lead_spindle(&mut self, block: &Block) -> bool {
+        let way = self.way_of_lead(block);
+        let stands = self.modal.spindle == SpindleState::Stop;
+        // A right-handed lead leaves a spindle that turns as it is: the sign may not count on this control.
+        let is_led = stands || (self.modal.lead_is_left && self.modal.spindle != way);
+        if is_led {
+            self.turn_spindle(way);
+        }
+        is_led
     }
 
     /// Turns the spindle, or stops it, without a word of the program.

@@ -2,7 +2,9 @@
 //!
 //! Source: numbers and decimal points of both families; diameter and radius words by role.
 
-use turnwright_control::policy::{CycleIntegerWords, FineDigits, IntegerWords, MissingPoint, NegativeFeed};
+use turnwright_control::policy::{
+    CycleIntegerWords, FineDigits, IntegerWords, LedSpindleFeed, MissingPoint, NegativeFeed,
+};
 use turnwright_syntax::{Decimal, Value, Word};
 use turnwright_units::{Diameter, LeastIncrement, Length, Radius};
 
@@ -256,24 +258,39 @@ impl Core {
     /// The F word of a block.
     #[inline]
     pub(crate) fn feed_word(&mut self, word: &Word, function: &Function) -> Result<(), Alarm> {
-        let per_revolution = function.takes_lead || self.modal.feed_mode == FeedMode::PerRevolution;
+        let takes_lead = function.takes_lead || (function.is_hole_cycle && self.taps_by_lead(function));
+        let per_revolution = takes_lead || self.modal.feed_mode == FeedMode::PerRevolution;
         let mut number = self.number(word)?;
+        self.modal.lead_is_left = false;
         if number.is_negative && number.digits != 0 {
-            if function.takes_lead || self.control.policies.negative_feed == NegativeFeed::Alarm {
+            if function.leads_spindle() && self.has_signed_leads() {
+                self.modal.lead_is_left = true;
+            } else if takes_lead || self.control.policies.negative_feed == NegativeFeed::Alarm {
                 return Err(self.alarm("minus-not-allowed", word));
+            } else {
+                self.warn("negative-feed-as-positive", word);
             }
-            self.warn("negative-feed-as-positive", word);
             number.digits = number.digits.abs();
         }
         let feed = self.feed(word, number, per_revolution)?;
         self.modal.feed = Some(feed);
-        self.modal.feed_is_lead = function.takes_lead;
-        if function.takes_lead {
+        self.modal.feed_is_lead = takes_lead;
+        if takes_lead {
             self.check_lead(word);
         } else {
             self.check_feed(word, feed, per_revolution);
         }
         Ok(())
+    }
+
+    /// F of the codes that lead the spindle is a lead with a sign.
+    pub(crate) fn has_signed_leads(&self) -> bool {
+        self.control.policies.led_spindle_feed == LedSpindleFeed::SignedLead
+    }
+
+    /// F of a tapping cycle is a lead.
+    fn taps_by_lead(&self, function: &Function) -> bool {
+        function.is_tapping() && self.has_signed_leads()
     }
 
     /// A code times ten: `G71` is 710, `G50.3` is 503.

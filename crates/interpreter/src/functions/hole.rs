@@ -54,9 +54,9 @@ pub(super) static SIDE_DRILLING_WITH_RETRACT: Function =
     })
     .hole_cycle();
 pub(super) static FACE_TAPPING: Function =
-    Function::motion("face-tapping", |core, call| holes(core, call, PeckAxis::Z, Work::Tap)).hole_cycle();
+    Function::motion("face-tapping", |core, call| holes(core, call, PeckAxis::Z, Work::Tap)).tapping_cycle();
 pub(super) static SIDE_TAPPING: Function =
-    Function::motion("side-tapping", |core, call| holes(core, call, PeckAxis::X, Work::Tap)).hole_cycle();
+    Function::motion("side-tapping", |core, call| holes(core, call, PeckAxis::X, Work::Tap)).tapping_cycle();
 pub(super) static FACE_BORING: Function =
     Function::motion("face-boring", |core, call| holes(core, call, PeckAxis::Z, Work::Bore)).hole_cycle();
 pub(super) static SIDE_BORING: Function =

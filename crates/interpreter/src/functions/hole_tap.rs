@@ -6,11 +6,12 @@
 //! **Flexible.** Feed and spindle know nothing of each other; the holder gives way.
 //!
 //! **Rigid.** With M29 (5210) before the cycle, or always by 5200#0, the tap follows the spindle: the lead is F with feed
-//! per revolution, else F divided by S. S must be there, and not above 5241. The spindle stands behind each hole.
+//! per revolution, else F divided by S; on controls whose leads have a sign F is the lead itself, negative for a
+//! left-hand thread, or I gives threads per inch. S must be there, and not above 5241. The spindle stands behind each hole.
 //! Q makes pecks, out to the R point (5200#5 at 1) or back by 5213; the way out is faster by 5211 where 5200#4 allows
 //! it. Between M29 and the cycle no axis may move and S may not change; the plane stays as it is.
 //!
-//! Source: tapping cycles, both families; the 980 series taps rigidly without a code.
+//! Source: tapping cycles, both families; the 980 series taps rigidly without a code, and its help (6.10) calls F a lead.
 
 use turnwright_canon::{Action, SpindleSpeed, SpindleState};
 use turnwright_cycles::{Peck, PeckRetract, Tap};
@@ -121,10 +122,14 @@ impl Core {
         peck: Length,
         depth: Length,
     ) -> Result<(Tap, Feed), Alarm> {
+        if let Some(word) = call.block.word(b'I').filter(|_| !self.has_signed_leads()) {
+            return Err(self.alarm("illegal-address", word));
+        }
         let is_announced = self.modal.awaits_rigid_tap;
         self.forget_rigid_tapping();
         hole.is_rigid |= is_announced || self.settings.hole.tap.is_always_rigid;
         let turns = match self.modal.spindle {
+            _ if self.has_signed_leads() => self.way_of_lead(call.block),
             SpindleState::CounterClockwise => SpindleState::CounterClockwise,
             SpindleState::Clockwise | SpindleState::Stop => SpindleState::Clockwise,
         };
@@ -169,13 +174,14 @@ impl Core {
         depth: Length,
     ) -> Result<(Tap, Feed), Alarm> {
         let at_speed = call.block.word(b'S').or(call.word);
-        let settings = &self.settings.hole.tap;
+        let settings = self.settings.hole.tap.clone();
         let rpm = self.modal.rpm;
         let is_too_fast = settings.rpm_max > 0 && rpm.0 > settings.rpm_max;
         if self.modal.speed_mode == SpeedMode::Surface || rpm.0 == 0 || is_too_fast {
             return Err(self.alarm_at("rigid-tap-speed-illegal", at_speed));
         }
         let lead = match self.feed_in_force() {
+            _ if self.has_signed_leads() => self.lead_in_force(call)?.0,
             Some(Feed::PerRevolution(FeedPerRevolution(lead))) => lead,
             Some(Feed::PerMinute(FeedPerMinute(feed))) => {
                 let rpm = i64::from(rpm.0);

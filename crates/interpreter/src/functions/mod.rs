@@ -249,9 +249,19 @@ impl Function {
         self.with_other_axes().allowed_in_rotation().with_letters(b"RQPKJD").triggered_by(b"RQPKJD")
     }
 
+    /// A hole cycle that may have its lead as threads per inch.
+    pub(crate) const fn tapping_cycle(self) -> Self {
+        self.hole_cycle().with_letters(b"RQPKJDI")
+    }
+
     /// A tapping cycle.
     pub(crate) fn is_tapping(&self) -> bool {
         matches!(self.name, "face-tapping" | "side-tapping")
+    }
+
+    /// It can lead the spindle as an axis.
+    pub(crate) fn leads_spindle(&self) -> bool {
+        self.is_tapping() || matches!(self.name, "rigid-thread" | "rigid-thread-cycle")
     }
 
     /// A turning, facing or thread cycle of one block.
@@ -373,6 +383,7 @@ static ALL: &[&Function] = &[
     &groove::RADIAL_GROOVE,
     &multi_thread::MULTI_THREAD,
     &multi_thread::ENHANCED_THREAD,
+    &multi_thread::ENHANCED_THREAD_980,
     &macro_call::MACRO_CALL,
     &macro_call::MODAL_MACRO_CALL,
     &macro_call::MACRO_CALL_EACH_BLOCK,

@@ -1,4 +1,4 @@
-//! `multi-thread`, `enhanced-thread` — a thread in many passes (G76; G78 in system C; G78 of the 988 series).
+//! `multi-thread`, `enhanced-thread`, `enhanced-thread-980` — a thread in many passes (G76; G78 in system C; G78 of GSK).
 //!
 //! `G76 P(m)(r)(a) Q(Δdmin) R(d)`, then `G76 X(U)_ Z(W)_ R(i) P(k) Q(Δd) F(L)`. The block with an end point runs
 //! the cycle, the one without stores its values in the parameters: m finishing passes, run-out r in tenths of
@@ -20,7 +20,13 @@
 //! `enhanced-thread` has the words of G76 without D and L; parameters choose flank (5144) and depths (5145), and
 //! steps clamped by the least depth stay equal.
 //!
-//! Source: multiple thread cutting cycle of both families.
+//! `enhanced-thread-980` says with its words what those parameters say: of P, m is the way of the depths (0 equal steps,
+//! 1 as G76), r the flank (0 straight in, 1 left, 2 right, 3 both in turn), a the angle; D counts the finishing passes,
+//! L the starts, J and K are the run-out, which r is not there. What P leaves unwritten stays as it was, at first by
+//! parameters 061 and 062. That m, r and a have two digits each as in G76 is taken over from there. D and L count
+//! for this cycle alone. E, a run-in across the axis, is refused: over which length it goes down is not told.
+//!
+//! Source: multiple thread cutting cycle of both families; programming help of the 980TDi, version 6.10.
 
 use turnwright_control::policy::{MultiThreadWords, ThreadAngles, ThreadDepthClamp, ThreadDigits};
 use turnwright_cycles as cycles;
@@ -49,11 +55,20 @@ pub(super) static ENHANCED_THREAD: Function =
         .with_lead()
         .multiple_cycle();
 
-/// Which of the two cycles: they differ in where flank and depths come from.
+pub(super) static ENHANCED_THREAD_980: Function =
+    Function::one_shot("enhanced-thread-980", |core, call| multi_thread(core, call, Cycle::EnhancedByWords))
+        .with_letters(b"PQRDIJKLAE")
+        .with_lead()
+        .multiple_cycle();
+
+/// Which of the cycles: they differ in where flank and depths come from.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Cycle {
     Common,
+    /// From parameters.
     Enhanced,
+    /// From words of the block that stores.
+    EnhancedByWords,
 }
 
 /// Nose angles of the controls that list them.
@@ -79,6 +94,8 @@ struct ThreadWords {
     start_angle: Angle,
     depths: cycles::DepthLaw,
     infeed: cycles::FlankInfeed,
+    finishing_passes: u32,
+    starts: u32,
 }
 
 fn multi_thread(core: &mut Core, call: &mut Call<'_>, cycle: Cycle) -> Result<(), Alarm> {
@@ -99,9 +116,14 @@ fn multi_thread(core: &mut Core, call: &mut Call<'_>, cycle: Cycle) -> Result<()
 impl Core {
     fn store_multi_thread(&mut self, block: &Block, cycle: Cycle) -> Result<(), Alarm> {
         let words = self.control.policies.multi_thread_words;
+        let by_words = cycle == Cycle::EnhancedByWords;
+        if let Some(word) = block.word(b'E').filter(|_| by_words) {
+            return Err(self.not_supported(ENHANCED_THREAD_980.name, word));
+        }
         self.refuse_letters(
             block,
             match (words, cycle) {
+                (_, Cycle::EnhancedByWords) => b"IA",
                 (MultiThreadWords::Plain, _) => b"DIJKLAE",
                 (MultiThreadWords::RunOutInData, _) => b"DILAE",
                 (MultiThreadWords::FlanksAndStarts, Cycle::Common) => b"IJKAE",
@@ -109,7 +131,7 @@ impl Core {
             },
         )?;
         if let Some(word) = block.word(b'P') {
-            self.store_thread_digits(word)?;
+            if by_words { self.store_enhanced_digits(word)? } else { self.store_thread_digits(word)? }
         }
         if let Some(word) = block.word(b'Q') {
             let depth = self.cycle_length(word)?;
@@ -123,6 +145,10 @@ impl Core {
             self.settings.thread_finishing_allowance = Radius(self.unsigned_length(word)?);
             self.missing_point(word);
             self.note_given("thread-finishing-allowance", word);
+        }
+        if by_words {
+            self.store_enhanced_words(block)?;
+            return self.store_run_out(block);
         }
         if let Some(word) = block.word(b'D') {
             self.settings.thread_infeed = match self.whole(word, 99)? {
@@ -139,6 +165,36 @@ impl Core {
             };
         }
         self.store_run_out(block)
+    }
+
+    /// `P mmrraa` of the cycle whose words choose depths and flank.
+    fn store_enhanced_digits(&mut self, word: &Word) -> Result<(), Alarm> {
+        let value = self.whole(word, 999_999)?;
+        let typed = self.number(word)?.typed_digits;
+        let (depths, flank, angle) = (value / 10_000, value / 100 % 100, value % 100);
+        let Some(infeed) = flank_infeed(flank).filter(|_| depths <= 1) else {
+            return Err(self.alarm("thread-method-illegal", word));
+        };
+        self.settings.thread_nose_angle_deg = angle as u8;
+        self.note_given("thread-nose-angle", word);
+        if typed > 2 || value > 99 {
+            self.settings.enhanced_thread_infeed = infeed;
+        }
+        if typed > 4 || value > 9_999 {
+            self.settings.enhanced_thread_equal_steps = depths == 0;
+        }
+        Ok(())
+    }
+
+    /// D and L of the same cycle.
+    fn store_enhanced_words(&mut self, block: &Block) -> Result<(), Alarm> {
+        if let Some(word) = block.word(b'D') {
+            self.settings.enhanced_thread_finishing_passes = Some(self.whole(word, 99)?).filter(|n| *n > 0);
+        }
+        if let Some(word) = block.word(b'L') {
+            self.settings.enhanced_thread_starts = self.thread_starts(word)?;
+        }
+        Ok(())
     }
 
     /// J and K stay in force; r written after them takes their place.
@@ -207,17 +263,22 @@ impl Core {
         let (height, first_depth) = (positive(b'P')?, positive(b'Q')?);
         self.store_run_out(call.block)?;
         let clamp = match self.control.policies.thread_depth_clamp {
-            ThreadDepthClamp::Formula if cycle == Cycle::Common => cycles::Clamp::Formula,
+            ThreadDepthClamp::Formula if cycle != Cycle::Enhanced => cycles::Clamp::Formula,
             ThreadDepthClamp::Accumulate | ThreadDepthClamp::Formula => cycles::Clamp::Accumulate,
         };
         let settings = &self.settings;
         let (infeed, depths) = match cycle {
             Cycle::Common => (settings.thread_infeed, cycles::DepthLaw::EqualArea(clamp)),
-            Cycle::Enhanced if settings.enhanced_thread_equal_steps => {
+            _ if settings.enhanced_thread_equal_steps => {
                 (settings.enhanced_thread_infeed, cycles::DepthLaw::EqualSteps)
             }
-            Cycle::Enhanced => (settings.enhanced_thread_infeed, cycles::DepthLaw::EqualArea(clamp)),
+            _ => (settings.enhanced_thread_infeed, cycles::DepthLaw::EqualArea(clamp)),
         };
+        let (mut finishing_passes, mut starts) = (settings.thread_finishing_passes, settings.thread_starts);
+        if cycle == Cycle::EnhancedByWords {
+            finishing_passes = settings.enhanced_thread_finishing_passes.unwrap_or(finishing_passes);
+            starts = settings.enhanced_thread_starts;
+        }
         Ok(ThreadWords {
             taper: self.thread_taper(call, b'R')?,
             height,
@@ -226,6 +287,8 @@ impl Core {
             start_angle: Angle::ZERO,
             depths,
             infeed,
+            finishing_passes,
+            starts,
         })
     }
 
@@ -267,6 +330,8 @@ impl Core {
                 1 | 3 => cycles::FlankInfeed::WithCut,
                 _ => cycles::FlankInfeed::BothFlanks,
             },
+            finishing_passes: self.settings.thread_finishing_passes,
+            starts: self.settings.thread_starts,
         })
     }
 
@@ -309,7 +374,7 @@ impl Core {
             first_depth: words.first_depth,
             min_depth: settings.thread_minimum_depth,
             finishing_allowance: settings.thread_finishing_allowance,
-            finishing_passes: settings.thread_finishing_passes,
+            finishing_passes: words.finishing_passes,
             run_out,
             run_out_angle_deg: settings.run_out_angle_deg,
             run_out_depth,
@@ -317,7 +382,7 @@ impl Core {
             nose_angle_deg: words.nose_angle_deg,
             lead,
             start_angle: words.start_angle,
-            starts: settings.thread_starts,
+            starts: words.starts,
             depths: words.depths,
             infeed: words.infeed,
         };
@@ -386,6 +451,17 @@ impl Core {
 
 /// The least way of a thread before the work, in leads: the axis has to come up to the spindle's pace.
 const LEAD_IN_LEADS: f64 = 2.0;
+
+/// The flank that a number chooses.
+pub(crate) const fn flank_infeed(number: u32) -> Option<cycles::FlankInfeed> {
+    Some(match number {
+        0 => cycles::FlankInfeed::Centre,
+        1 => cycles::FlankInfeed::AgainstCut,
+        2 => cycles::FlankInfeed::WithCut,
+        3 => cycles::FlankInfeed::BothFlanks,
+        _ => return None,
+    })
+}
 
 /// The run-out: tenths of the lead.
 pub(super) fn run_out(lead: Lead, tenths: u32) -> Length {

@@ -21,8 +21,8 @@
 //! X, Z and R stay in force while the code does: a block with a new X repeats the cycle from the same start
 //! point, one with `U0` or `W0` repeats it as it was. A code of its own without any axis word only takes effect with the next axis word.
 //!
-//! `G92.1` is G92 with the spindle led as an axis: it needs S, turns a spindle that stands clockwise, and stops it
-//! behind the cycle again, as `G32.1` does.
+//! `G92.1` is G92 with the spindle led as an axis: it needs S, turns a spindle that stands clockwise (where leads have a
+//! sign, counter-clockwise for a negative one), and stops it behind the cycle again, as `G32.1` does.
 //!
 //! `G92.2` is G92 with a run-in: the tool goes down by D over the length E while it threads, and on without a stop.
 //! E lies along the thread, as its alarm compares E and K with the thread's length; so D lies across it, as J does. D has
@@ -32,7 +32,6 @@
 //!
 //! Source: single canned cycles of both families; thread repair: programming help of the 980TDi, version 6.10.
 
-use turnwright_canon::SpindleState;
 use turnwright_control::policy::{RunOutLengthAlone, RunOutWords, TaperSign, ThreadCycleWords};
 use turnwright_cycles as cycles;
 use turnwright_syntax::Word;
@@ -85,12 +84,9 @@ fn rigid_thread_cycle(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm>
     if core.present_rpm().0 == 0 {
         return Err(core.alarm_at("spindle-not-started", call.word));
     }
-    let stands = core.modal.spindle == SpindleState::Stop;
-    if stands {
-        core.turn_spindle(SpindleState::Clockwise);
-    }
+    let is_led = core.lead_spindle(call.block);
     thread_cycle(core, call)?;
-    if stands {
+    if is_led {
         core.stop_spindle_behind_cycle();
     }
     Ok(())

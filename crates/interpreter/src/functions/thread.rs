@@ -16,6 +16,8 @@
 //! (signed) along the short one. Without J, or with J zero, there is none. J without K is by policy a run-out as
 //! long as it is deep, or a pull-out straight from the end at its own speed (1466). A run-out ends the thread: a
 //! thread block that would go on from it is refused, as the control makes run-outs only in the last block of a chain.
+//! The help of the 980TDi calls J and K modal; how long they stay is not told, so a later thread without them has no
+//! run-out here, and a warning says so.
 //!
 //! `G32.1` leads the spindle as an axis: it turns for this block only, at S.
 //!
@@ -99,12 +101,9 @@ fn rigid_thread(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
         return Err(core.alarm_at("spindle-not-started", call.word));
     }
     core.check_thread_speed(call, lead)?;
-    let stands = core.modal.spindle == SpindleState::Stop;
-    if stands {
-        core.turn_spindle(SpindleState::Clockwise);
-    }
+    let is_led = core.lead_spindle(call.block);
     core.cut_thread(call, to, lead, Length::ZERO)?;
-    if stands {
+    if is_led {
         core.turn_spindle(SpindleState::Stop);
     }
     Ok(())
@@ -204,8 +203,15 @@ impl Core {
 
     /// J and K; `None` when there is no run-out.
     fn thread_run_out(&mut self, call: &Call<'_>) -> Result<Option<RunOut>, Alarm> {
-        let Some(word) = call.block.word(b'J') else { return Ok(None) };
+        let Some(word) = call.block.word(b'J') else {
+            if self.modal.has_run_out_words && !self.is_behind_thread() {
+                self.warn_block("run-out-may-stay");
+            }
+            return Ok(None);
+        };
         let across = self.radius(word, Role::RunOut)?.0;
+        self.modal.has_run_out_words =
+            !across.is_zero() && self.control.policies.run_out_words == RunOutWords::LengthAsDepth;
         let along = call.block.word(b'K').map(|word| self.unsigned_length(word)).transpose()?;
         let along = match (along.unwrap_or(Length::ZERO), self.control.policies.run_out_words) {
             (along, RunOutWords::LengthAsDepth) if along.is_zero() => across.abs(),
