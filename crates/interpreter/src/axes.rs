@@ -563,6 +563,7 @@ impl Core {
         let place = self.modal.position;
         let (real, _) = self.axes.interpolation.axes_at(place, self.axes.v, &Shape::Line, self.axes.at.c);
         self.axes.interpolate(Interpolation::Normal);
+        self.settings.x_is_radius = !self.control.parameters.bit("diameter-programming");
         self.emit(Action::Interpolation(Interpolation::Normal));
         if real != place {
             let increment = self.modal.increment(&self.settings);

@@ -196,6 +196,8 @@ pub(crate) struct Settings {
     pub(crate) run_out_tenths: u32,
     /// Depth of a run-in that no word gives, radius.
     pub(crate) run_in_depth: Length,
+    /// Length of a run-in that no word gives.
+    pub(crate) run_in_length: Length,
     pub(crate) run_out_angle_deg: u8,
     pub(crate) one_block_form: bool,
     pub(crate) cut_depth: Length,
@@ -372,6 +374,7 @@ impl Settings {
             thread_pull_out_feed: Some(mm("thread-pull-out-feed")).filter(|feed| feed.signum() > 0),
             run_out_tenths: count("thread-run-out"),
             run_in_depth: mm("thread-run-in"),
+            run_in_length: mm("thread-run-in-length"),
             run_out_angle_deg: count("thread-run-out-angle").min(89) as u8,
             one_block_form: bit("one-block-cycle-form"),
             cut_depth: mm("cycle-depth-of-cut"),

@@ -171,6 +171,9 @@ impl Core {
             if self.control.policies.missing_point == MissingPoint::Alarm && number.digits != 0 {
                 return Err(self.alarm("point-required", word));
             }
+            if number.digits.abs() >= digits_max {
+                return Err(self.alarm("number-too-long", word));
+            }
             return Ok(Length::from_nm(number.digits * increment));
         }
         let unit = if self.modal.is_inch { 25_400_000 } else { 1_000_000 };

@@ -2,7 +2,7 @@
 //! G15) and `cylindrical-interpolation` (G07.1) — milling on the face and round the circumference.
 //!
 //! **Polar**: from `G12.1` on, X and C are the axes of a plane across the spindle whose zero lies on the spindle
-//! axis. X is a diameter as ever, C a length in millimetres as a radius value, and starts at 0 where C stands.
+//! axis. X is a diameter as ever (a radius by 5450#6), C a length in millimetres as a radius value, and starts at 0 where C stands.
 //! Two parameters name the axes by number (5460, 5461). Straight cuts, arcs (`R`, or `I J`), dwell, nose
 //! compensation, macro calls and feed modes are allowed; positioning where the control has it. `G13.1` ends the
 //! mode; X and C then count from where they really are.
@@ -144,6 +144,9 @@ fn cylindrical(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
 impl Core {
     fn begin_interpolation(&mut self, interpolation: Interpolation) {
         self.axes.interpolate(interpolation);
+        if matches!(interpolation, Interpolation::Polar { .. }) {
+            self.settings.x_is_radius |= self.control.parameters.bit("polar-x-is-radius");
+        }
         self.emit(Action::Interpolation(interpolation));
     }
 

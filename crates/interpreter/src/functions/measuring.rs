@@ -1,9 +1,9 @@
 //! `measuring-x`, `measuring-z` — automatic tool offset (G36, G37).
 //!
 //! `G36 X_` or `G37 Z_`: the tool goes at rapid to the distance γ (6251, 6252) before the place, then at the
-//! measuring feed (6241) on, until the signal of the sensor comes. It must come within ε (6254, 6255) of the place,
+//! measuring feed (6241; of G37 6242 where it is set) on, until the signal of the sensor comes. It must come within ε (6254, 6255) of the place,
 //! else there is an alarm and nothing is corrected. The difference between where it came and the place
-//! is added to the wear of the offset in force, which then acts as any changed offset does. γ and ε are radius
+//! is added to the wear of the offset in force (or taken from it, 6210#6), which then acts as any changed offset does. γ and ε are radius
 //! values in X.
 //!
 //! The offset must have been called before; T, an increment or another axis in the block is an alarm. Nose
@@ -29,6 +29,9 @@ pub(super) static MEASURING_Z: Function =
 
 fn measure(core: &mut Core, call: &mut Call<'_>, axis: Axis) -> Result<(), Alarm> {
     let block = call.block;
+    if core.control.parameters.bit("measuring-unavailable") {
+        return Err(core.alarm_at("measuring-switched-off", call.word));
+    }
     if core.is_compensating() {
         return Err(core.alarm_at("skip-in-compensation", call.word));
     }
@@ -47,7 +50,11 @@ fn measure(core: &mut Core, call: &mut Call<'_>, axis: Axis) -> Result<(), Alarm
     }
     let nominal = core.target(block)?;
     core.missing_point(word);
-    let feed = Length::from_nm((core.control.parameters.value("measuring-feed") * 1e6).round() as i64);
+    let feed = |name| Length::from_nm((core.control.parameters.value(name) * 1e6).round() as i64);
+    let feed = match feed("measuring-feed-z") {
+        of_z if axis == Axis::Z && !of_z.is_zero() => of_z,
+        _ => feed("measuring-feed"),
+    };
     if feed.is_zero() {
         return Err(core.alarm_at("feed-missing", call.word));
     }
@@ -81,6 +88,8 @@ fn measure(core: &mut Core, call: &mut Call<'_>, axis: Axis) -> Result<(), Alarm
         return Err(core.alarm_at("measuring-signal-outside-window", call.word));
     }
     let is_diameter = axis == Axis::X && core.settings.offsets.wear_x_is_diameter();
+    let difference =
+        if core.control.parameters.bit("measuring-subtracts") { -difference } else { difference };
     let change = if is_diameter { Radius(difference).to_diameter().0 } else { difference };
     let field = if axis == Axis::X { OffsetField::X } else { OffsetField::Z };
     core.offset_value(OffsetTable::Wear, field, number)

@@ -25,8 +25,8 @@
 //! sign, counter-clockwise for a negative one), and stops it behind the cycle again, as `G32.1` does.
 //!
 //! `G92.2` is G92 with a run-in: the tool goes down by D over the length E while it threads, and on without a stop.
-//! E lies along the thread, as its alarm compares E and K with the thread's length; so D lies across it, as J does. D has
-//! a default (5150), E has none; both stay in force as J and K do.
+//! E lies along the thread, as its alarm compares E and K with the thread's length; so D lies across it, as J does. They have
+//! defaults (5150, 5151); both stay in force as J and K do.
 //!
 //! Deliberately not here: `G92.3`, of whose equal crests no text at hand says how the tool moves.
 //!
@@ -310,7 +310,7 @@ impl Core {
         cycle.run_in_depth = depth.or(cycle.run_in_depth);
         cycle.run_in_length = way.or(cycle.run_in_length);
         let depth = cycle.run_in_depth.unwrap_or(self.settings.run_in_depth);
-        let length = cycle.run_in_length.unwrap_or(Length::ZERO);
+        let length = cycle.run_in_length.unwrap_or(self.settings.run_in_length);
         if depth.is_zero() {
             return Err(self.alarm_at("run-in-zero-d", across.or(call.word)));
         }
