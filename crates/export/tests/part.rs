@@ -107,6 +107,7 @@ fn a_thread_in_a_bore_with_steps_in_its_flanks_is_two_straight_lines() {
     assert_eq!(bore.len(), 2);
     assert_eq!(bore.iter().filter(|edge| shape.thread_of(edge) == Some(thread)).count(), 1);
     assert!(near(shape.plain_volume_mm3(), plain.volume_mm3()) && shape.volume_mm3 < plain.volume_mm3());
+    assert_eq!(thread.taper_deg(), None);
     // The thread is no cylinder beside itself.
     assert!(
         shape.cylinders.iter().all(|one| !one.is_inside || near(one.z.1, -15.2)),
@@ -130,6 +131,8 @@ fn the_crest_of_a_taper_thread_cut_from_the_bar_is_what_its_grooves_left() {
     // The peaks stand 1.5 mm over the roots, half-way between two of them.
     let half_way = 8.0 + 0.05 * (12.7 - 0.5) + 1.5;
     assert!((thread.crest_mm - 2.0 * half_way).abs() < 0.1, "{thread:?}");
+    // 0.1 mm in 2: 2 · atan 0.05 between its sides.
+    assert!(thread.taper_deg().is_some_and(|angle| (angle - 5.725).abs() < 0.3), "{:?}", thread.taper_deg());
     let crest: Vec<_> = shape.loops.iter().flatten().filter(|edge| shape.thread_of(edge).is_some()).collect();
     assert!((1..=2).contains(&crest.len()), "{crest:?}");
     assert!(shape.plain_volume_mm3() < plain.volume_mm3() && shape.plain_volume_mm3() > section.volume_mm3());

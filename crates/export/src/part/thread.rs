@@ -181,17 +181,19 @@ impl Thread {
 
     /// The name of a metric thread, `M20×1.5`; nothing for any other, for tapers and for those of a face.
     pub fn name(&self) -> Option<String> {
-        let is_level = self.root.windows(2).all(|two| (two[0].x - two[1].x).abs() < 0.02);
+        let is_level = self.taper_deg().is_none();
         let is_round = matches!(self.side, Side::Outside | Side::Inside);
         let pitch_mm = self.lead_mm / self.starts.max(1) as f64;
         let (low, high) = (self.crest_mm.min(self.root_mm), self.crest_mm.max(self.root_mm));
         (is_level && is_round).then(|| super::metric::name(high, low, pitch_mm, self.starts)).flatten()
     }
 
-    /// How its crest tapers: between its sides, degrees; nothing for a straight one.
+    /// How its roots taper: between its sides, degrees; nothing for a straight one. Its run-out is no taper: the longest
+    /// stretch counts.
     pub fn taper_deg(&self) -> Option<f64> {
-        let (first, last) = (self.root.first()?, self.root.last()?);
-        let (dx, dz) = ((last.x - first.x).abs(), (last.z - first.z).abs());
+        let stretches = self.root.windows(2).map(|two| (two[1].x - two[0].x, two[1].z - two[0].z));
+        let (dx, dz) = stretches.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+        let (dx, dz) = (dx.abs(), dz.abs());
         (matches!(self.side, Side::Outside | Side::Inside) && dx > 0.02)
             .then(|| 2.0 * dx.atan2(dz).to_degrees())
     }
