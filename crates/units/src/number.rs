@@ -13,79 +13,95 @@ pub fn write_fixed(out: &mut Vec<u8>, value: i64, decimals: u8) {
         3 => (magnitude / 1_000, magnitude % 1_000),
         4 => (magnitude / 10_000, magnitude % 10_000),
         6 => (magnitude / 1_000_000, magnitude % 1_000_000),
-        _ => {
-            let unit = 10u64.pow(u32::from(decimals.min(18)));
-            (magnitude / unit, magnitude % unit)
-        }
+        _ => return write_any(out, value, decimals),
     };
-    let mut text = [b'0'; NUMBER_BYTES * 2];
-    // Where the point stands, when there is one: the digits behind it keep their leading zeros.
-    let point = WHOLE_BYTES;
-    let mut end = point;
-    if fraction > 0 {
-        text[point] = b'.';
-        end = point + 1 + usize::from(decimals.min(18));
-        write_digits(&mut text, end, fraction);
-        while text[end - 1] == b'0' {
-            end -= 1;
-        }
+    if whole >= EIGHT_DIGITS {
+        return write_any(out, value, decimals);
     }
-    let mut start = write_digits(&mut text, point, whole);
     if value < 0 {
-        start -= 1;
-        text[start] = b'-';
+        out.push(b'-');
     }
-    append(out, &text, start..end);
+    write_short(out, whole);
+    if fraction > 0 {
+        let digits = eight_digits(fraction);
+        // What stands before the places is zeros, and so may be what stands last.
+        let shift = 8 * (8 - u32::from(decimals));
+        let kept = usize::from(decimals) - (digits.leading_zeros() / 8) as usize;
+        let text = (((digits + ZEROS) >> shift) << 8) | u64::from(b'.');
+        append(out, text, 1 + kept);
+    }
 }
 
 /// Writes a whole number.
+#[inline]
 pub fn write_whole(out: &mut Vec<u8>, number: u32) {
-    let mut text = [b'0'; NUMBER_BYTES * 2];
-    let start = write_digits(&mut text, WHOLE_BYTES, number.into());
-    append(out, &text, start..WHOLE_BYTES);
-}
-
-/// A sign and the digits of a whole number of 64 bits.
-const WHOLE_BYTES: usize = 21;
-/// The same with a point and eighteen places.
-const NUMBER_BYTES: usize = WHOLE_BYTES + 1 + 18;
-
-/// Every number below a hundred, two digits each.
-const PAIRS: [[u8; 2]; 100] = {
-    let mut pairs = [[b'0'; 2]; 100];
-    let mut number = 0;
-    while number < pairs.len() {
-        pairs[number] = [b'0' + (number / 10) as u8, b'0' + (number % 10) as u8];
-        number += 1;
-    }
-    pairs
-};
-
-/// Writes the digits of a number so that they end in front of `end`; where they start.
-#[inline]
-fn write_digits(text: &mut [u8; NUMBER_BYTES * 2], end: usize, number: u64) -> usize {
-    let (mut at, mut rest) = (end, number);
-    while rest >= 100 {
-        at -= 2;
-        text[at..at + 2].copy_from_slice(&PAIRS[(rest % 100) as usize]);
-        rest /= 100;
-    }
-    if rest >= 10 {
-        at -= 2;
-        text[at..at + 2].copy_from_slice(&PAIRS[rest as usize]);
+    if u64::from(number) < EIGHT_DIGITS {
+        write_short(out, number.into());
     } else {
-        at -= 1;
-        text[at] = b'0' + rest as u8;
+        write_any(out, number.into(), 0);
     }
-    at
 }
 
-/// Appends a part of `text`. A copy of known length is a few moves, one of any length is a call.
+/// The first number of nine digits.
+const EIGHT_DIGITS: u64 = 100_000_000;
+/// Eight zeros as text.
+const ZEROS: u64 = u64::from_ne_bytes([b'0'; 8]);
+
+/// Writes a number of at most eight digits.
 #[inline]
-fn append(out: &mut Vec<u8>, text: &[u8; NUMBER_BYTES * 2], part: std::ops::Range<usize>) {
-    let length = out.len() + part.len();
-    out.extend_from_slice(&text[part.start..part.start + NUMBER_BYTES]);
-    out.truncate(length);
+fn write_short(out: &mut Vec<u8>, number: u64) {
+    let digits = eight_digits(number);
+    let skipped = (digits.trailing_zeros() / 8).min(7);
+    append(out, (digits + ZEROS) >> (8 * skipped), (8 - skipped) as usize);
+}
+
+/// The eight digits of a number, one a byte, the first in the lowest: by fours, by pairs, one by one.
+#[inline]
+const fn eight_digits(number: u64) -> u64 {
+    let fours = (number / 10_000) | ((number % 10_000) << 32);
+    let hundreds = ((fours * 5_243) >> 19) & 0x0000_007f_0000_007f;
+    let pairs = hundreds | ((fours - 100 * hundreds) << 16);
+    let tens = ((pairs * 103) >> 10) & 0x000f_000f_000f_000f;
+    tens | ((pairs - 10 * tens) << 8)
+}
+
+/// Appends the first bytes of eight, the lowest first. They are never in memory one by one: whoever reads as a whole
+/// what was written in pieces waits for the pieces.
+#[inline]
+fn append(out: &mut Vec<u8>, text: u64, length: usize) {
+    let end = out.len() + length;
+    out.extend_from_slice(&text.to_le_bytes());
+    out.truncate(end);
+}
+
+/// Any number, digit by digit.
+#[cold]
+fn write_any(out: &mut Vec<u8>, value: i64, decimals: u8) {
+    let mut magnitude = value.unsigned_abs();
+    let mut places = decimals.min(18);
+    while places > 0 && magnitude.is_multiple_of(10) {
+        magnitude /= 10;
+        places -= 1;
+    }
+    // 20 digits of a u64, a point, a sign, and a zero before the point.
+    let mut text = [0u8; 24];
+    let mut at = text.len();
+    let mut written = 0u8;
+    while magnitude > 0 || written <= places {
+        if written == places && places > 0 {
+            at -= 1;
+            text[at] = b'.';
+        }
+        at -= 1;
+        text[at] = b'0' + (magnitude % 10) as u8;
+        magnitude /= 10;
+        written += 1;
+    }
+    if value < 0 {
+        at -= 1;
+        text[at] = b'-';
+    }
+    out.extend_from_slice(&text[at..]);
 }
 
 /// Writes a length in millimetres, rounded to `decimals` (at most 6) places, halves away from zero,
@@ -124,6 +140,23 @@ mod tests {
         assert_eq!(fixed(1, 18), "0.000000000000000001");
         assert_eq!(fixed(i64::MIN, 18), "-9.223372036854775808");
         assert_eq!(fixed(i64::MIN, 0), "-9223372036854775808");
+    }
+
+    #[test]
+    fn short_numbers_are_written_as_any_are() {
+        let mut seed = 0x5eed_0f5e_ed00u64;
+        for round in 0..20_000 {
+            seed ^= seed << 13;
+            seed ^= seed >> 7;
+            seed ^= seed << 17;
+            let end = 10i64.pow(round % 16);
+            let value = (seed as i64) % end * [1, 10, 1_000][round as usize % 3];
+            for decimals in 0..10 {
+                let mut any = Vec::new();
+                write_any(&mut any, value, decimals);
+                assert_eq!(fixed(value, decimals).as_bytes(), any, "{value} {decimals}");
+            }
+        }
     }
 
     #[test]

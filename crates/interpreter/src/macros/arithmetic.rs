@@ -207,7 +207,7 @@ pub(super) fn divide(left: f64, right: f64) -> Result<f64, CodeFault> {
     if right == 0.0 { Err(CodeFault::DivideByZero) } else { Ok(left / right) }
 }
 
-/// The sine of an angle in degrees, exact at every multiple of 90.
+/// The sine of an angle in degrees, exact at every multiple of 90 and the same on every machine.
 #[inline]
 fn sine(degrees: f64) -> f64 {
     /// Adding and taking away this rounds to a whole number.
@@ -218,10 +218,10 @@ fn sine(degrees: f64) -> f64 {
     let quarter = (degrees * (1.0 / 90.0) + WHOLE) - WHOLE;
     let rest = (degrees - quarter * 90.0).to_radians();
     match quarter as i64 & 3 {
-        0 => rest.sin(),
-        1 => rest.cos(),
-        2 => -rest.sin(),
-        _ => -rest.cos(),
+        0 => libm::sin(rest),
+        1 => libm::cos(rest),
+        2 => -libm::sin(rest),
+        _ => -libm::cos(rest),
     }
 }
 
