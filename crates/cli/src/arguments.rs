@@ -290,6 +290,11 @@ pub(crate) struct Time {
 ///
 /// Without --at all its sizes are listed: diameters, bores, tapers, radii, faces, grooves, threads, volume, and mass where
 /// the setup names the material. Sizes that the setup file gives with [[measure]] are judged by their tolerance.
+///
+/// With --target the part is held against a drawing, or against the figure that its finishing cycle (G70) follows as it is
+/// programmed: what is cut too deep and what is left standing, with the places and the lines that cut. A drawing is the
+/// half-section above the axis as DXF: X of the drawing is Z of the machine, Y is the radius, as in part.dxf; lines on the
+/// axis count for nothing, inches come from its $INSUNITS. Exit status 1 when anything is out of tolerance.
 #[derive(Debug, Args)]
 #[command(after_long_help = examples("measure"))]
 pub(crate) struct Measure {
@@ -298,6 +303,18 @@ pub(crate) struct Measure {
     /// Where to measure: Z-32 for diameters and wall, X25 for lengths and widths at a diameter; may be repeated
     #[arg(long, value_name = "PLACE", value_parser = SectionSpot::parse)]
     pub(crate) at: Vec<SectionSpot>,
+    /// What the part ought to be: a half-section as DXF, or g70 for the figure of the finishing cycles
+    #[arg(long, value_name = "FIGURE.dxf|g70", value_hint = clap::ValueHint::FilePath)]
+    pub(crate) target: Option<PathBuf>,
+    /// Layer of the DXF file that holds the contour [default: PART, else the only layer with lines]
+    #[arg(long, value_name = "NAME", requires = "target")]
+    pub(crate) layer: Option<String>,
+    /// How far the part may lie off its target, mm
+    #[arg(long, value_name = "MM", default_value_t = 0.01, value_parser = tolerance, requires = "target")]
+    pub(crate) tolerance: f64,
+    /// Draws part and target over each other: a name that ends in .svg or .png
+    #[arg(short, long, value_name = "OUT.svg|OUT.png", value_parser = picture_name, requires = "target")]
+    pub(crate) output: Option<PathBuf>,
     /// Form of the answer
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
     pub(crate) format: LookupFormat,
@@ -486,6 +503,11 @@ fn named(text: &str, ends: &[&str]) -> Option<PathBuf> {
     let path = PathBuf::from(text);
     let is_known = |end: &&str| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(end));
     ends.iter().any(is_known).then_some(path)
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let tolerance: Option<f64> = text.parse().ok().filter(|tolerance| (0.001..=10.0).contains(tolerance));
+    tolerance.ok_or_else(|| "expected a length from 0.001 to 10 mm".to_string())
 }
 
 fn chord(text: &str) -> Result<f64, String> {

@@ -91,6 +91,12 @@ impl<'a> Execution<'a> {
         })
     }
 
+    /// The same with sharp tools.
+    pub(crate) fn with_sharp_noses(mut self) -> Self {
+        self.interpreter = self.interpreter.with_sharp_noses();
+        self
+    }
+
     /// The next command; `None` at the end of the program or at an alarm.
     #[inline]
     pub(crate) fn next_command(&mut self) -> Option<Command> {

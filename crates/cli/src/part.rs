@@ -5,8 +5,11 @@ use turnwright_diagnostics::Diagnostic;
 use turnwright_export::part::PartShape;
 use turnwright_stock::Section;
 use turnwright_stock::machining::RapidRates;
+use turnwright_verify::Inferred;
+use turnwright_verify::figures::{FigureSearch, Figures};
 use turnwright_verify::measuring::{self, Judged};
 use turnwright_verify::part::{Part, PartRun};
+use turnwright_verify::target::Target;
 
 use crate::arguments::Machine;
 use crate::environment::ProgramText;
@@ -15,9 +18,18 @@ use crate::finding::Finding;
 use crate::report::Measure;
 use crate::session::Session;
 
-/// Cuts the program out of its stock, and measures what it does, when that is wanted. `setup` is the whole setup, with
-/// what the first run showed; nothing comes back when there is no stock, for the program cuts nothing.
-/// The section along the program is kept when the path is.
+/// What the part is held against.
+#[derive(Clone, Debug)]
+pub(crate) enum Aim {
+    /// A drawing of all of it.
+    Drawing(Box<Section>),
+    /// The figures of the program's finishing cycles.
+    Finishing,
+}
+
+/// Cuts the program out of its stock, and measures what it does, when that is wanted. `inferred` is the whole setup, and
+/// the figures that are finished, as the first run showed them; nothing comes back when there is no stock, for the
+/// program cuts nothing. The section along the program is kept when the path is.
 ///
 /// # Errors
 /// What the caller's look at the run gives: it may write what has been measured so far.
@@ -25,10 +37,12 @@ pub(crate) fn machined(
     text: &ProgramText,
     session: &Session,
     options: &Machine,
-    setup: &Setup,
+    inferred: &Inferred,
+    aim: Option<&Aim>,
     mut measure: Option<&mut Measure>,
     look: &mut dyn FnMut(&Execution<'_>, &mut Measure) -> Result<(), Finding>,
 ) -> Result<Option<Part>, Finding> {
+    let setup = &inferred.setup;
     if setup.stock.is_none() && measure.is_none() {
         return Ok(None);
     }
@@ -42,6 +56,17 @@ pub(crate) fn machined(
     let start = execution.interpreter().position();
     // A setup that is no setup was told of by the first run.
     let mut run = PartRun::new(setup, &session.setup, start, rates).ok().flatten();
+    if let Some(new) = run {
+        let figures = figures(text, session, &options, inferred)?;
+        let new = new.with_figures(&figures.found);
+        run = Some(match aim {
+            Some(Aim::Drawing(drawing)) => new.with_target(Target::Drawing(drawing.clone())),
+            Some(Aim::Finishing) if !figures.found.is_empty() => {
+                new.with_target(Target::Figures(figures.found))
+            }
+            _ => new,
+        });
+    }
     if measure.as_ref().is_some_and(|measure| measure.path.is_some()) {
         run = run.map(PartRun::with_history);
     }
@@ -60,6 +85,25 @@ pub(crate) fn machined(
         measure.finish();
     }
     Ok(run.map(PartRun::finish))
+}
+
+/// The figures that finishing cycles follow, as they are programmed: where compensation leads a round nose along them,
+/// another run with sharp tools shows them.
+fn figures(
+    text: &ProgramText,
+    session: &Session,
+    options: &Machine,
+    inferred: &Inferred,
+) -> Result<Figures, Finding> {
+    if !inferred.figures.is_compensated {
+        return Ok(inferred.figures.clone());
+    }
+    let mut execution = Execution::new(text, session, options)?.with_sharp_noses();
+    let mut search = FigureSearch::new(execution.interpreter().position());
+    while let Some(command) = execution.next_command() {
+        search.add(&command);
+    }
+    Ok(search.finish())
 }
 
 /// The sizes that the setup file asks for, measured; none where the program stopped short or too much of it was cut, for

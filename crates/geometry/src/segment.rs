@@ -28,6 +28,20 @@ impl Bend {
     pub(crate) fn sense(self) -> f64 {
         if self.clockwise { -1.0 } else { 1.0 }
     }
+
+    /// With the centre as far from one place as from the other, next to a centre that is nearly so.
+    #[must_use]
+    pub fn evened(self, from: Point, to: Point) -> Self {
+        let chord = Vector::between(from, to);
+        let length = chord.length();
+        // Places that are one have no middle between them.
+        if length <= 1e-9 {
+            return self;
+        }
+        let off = Vector::between(chord.times(0.5).from(from), self.centre);
+        let along = off.dot(chord) / length;
+        Self { centre: chord.times(-along / length).from(self.centre), ..self }
+    }
 }
 
 impl Segment {

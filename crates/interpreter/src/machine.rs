@@ -131,6 +131,8 @@ pub(crate) struct Core {
     pub(crate) settings: Settings,
     pub(crate) dispatch: Dispatch,
     pub(crate) options: Options,
+    /// No tool has a nose radius, whatever its offset says.
+    pub(crate) has_sharp_noses: bool,
     pub(crate) zeros: Zeros,
     /// Axes beyond X and Z.
     pub(crate) axes: Axes,
@@ -314,6 +316,7 @@ impl Interpreter {
             settings,
             dispatch,
             options,
+            has_sharp_noses: false,
             zeros,
             axes,
             homing: Homing {
@@ -437,6 +440,13 @@ impl Interpreter {
     /// Decimal places of the control's least increment, metric.
     pub fn decimals(&self) -> u8 {
         self.core.settings.metric_increment.metric_decimals()
+    }
+
+    /// The same with sharp tools: compensated moves then lead the tip along the contour as it was programmed.
+    #[must_use]
+    pub fn with_sharp_noses(mut self) -> Self {
+        self.core.has_sharp_noses = true;
+        self
     }
 
     /// Warnings given since the last call.

@@ -4,7 +4,7 @@
 //! a lower and an upper chain of edges; both are exact, lines and arcs again ([`crate::slide`], [`crate::swing`]).
 //! A sweep is made to be used again: `line` and `arc` write over the last one in the memory that is there.
 
-use turnwright_geometry::{Bend, Bounds, Point, Segment, Vector};
+use turnwright_geometry::{Bend, Bounds, Point, Segment};
 
 use crate::WELD_MM;
 use crate::band::Band;
@@ -73,7 +73,7 @@ impl Sweep {
         {
             return self.line(cutter, from, to);
         }
-        let bend = Bend { centre: evened(from, to, bend.centre), ..bend };
+        let bend = bend.evened(from, to);
         half_circles(from, to, bend, |start, end, path| {
             for part in &cutter.parts {
                 let (mut swing, stencil) = (std::mem::take(&mut self.swing), self.add());
@@ -165,17 +165,4 @@ impl Stencil {
 fn is_sound(place: Point) -> bool {
     use turnwright_geometry::OUTLINE_MM_MAX as MAX;
     place.x.abs() <= MAX && place.z.abs() <= MAX
-}
-
-/// The centre as far from one place as from the other, next to a centre that is nearly so.
-fn evened(from: Point, to: Point, centre: Point) -> Point {
-    let chord = Vector::between(from, to);
-    let length = chord.length();
-    if length <= WELD_MM {
-        return centre;
-    }
-    let middle = chord.times(0.5).from(from);
-    let off = Vector::between(middle, centre);
-    let along = (off.x * chord.x + off.z * chord.z) / length;
-    chord.times(-along / length).from(centre)
 }

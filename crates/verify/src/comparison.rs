@@ -57,16 +57,25 @@ impl Comparison {
 fn beyond(section: &Section, other: &Section, least_mm: f64) -> Vec<Piece> {
     let mut rest = section.clone();
     rest.cut_section(other);
-    let surface: Vec<Segment> =
-        other.contours().into_iter().flat_map(|contour| contour.segments).filter(off_axis).collect();
-    let loops = rest.contours().into_iter().filter(|contour| contour.area_mm2() > 0.0);
+    let surface = surface(other);
+    pieces(&rest, &surface, least_mm)
+}
+
+/// The pieces of a section that deviate from a surface by more than `least_mm`; the greatest areas first.
+pub(crate) fn pieces(section: &Section, surface: &[Segment], least_mm: f64) -> Vec<Piece> {
+    let loops = section.contours().into_iter().filter(|contour| contour.area_mm2() > 0.0);
     let mut pieces: Vec<Piece> =
         loops.map(|contour| (contour.area_mm2(), contour.segments)).map(Piece::outline).collect();
     pieces.sort_by(|a, b| b.area_mm2.total_cmp(&a.area_mm2).then(a.bounds.min.z.total_cmp(&b.bounds.min.z)));
     pieces.truncate(PIECES_MAX);
-    pieces.iter_mut().for_each(|piece| piece.look(&surface));
+    pieces.iter_mut().for_each(|piece| piece.look(surface));
     pieces.retain(|piece| piece.deviation_mm > least_mm.max(GRAIN_MM));
     pieces
+}
+
+/// The edges of a section that are its surface.
+pub(crate) fn surface(section: &Section) -> Vec<Segment> {
+    section.contours().into_iter().flat_map(|contour| contour.segments).filter(off_axis).collect()
 }
 
 /// The axis is no surface.
@@ -92,12 +101,19 @@ impl Piece {
             (self.deviation_mm, self.place) = (max.x - min.x, max);
             return;
         }
+        // Whatever is nearest to a place in the piece is not much farther from its middle than what is nearest to that.
+        let Bounds { min, max } = self.bounds;
+        let middle = Point::new((min.x + max.x) / 2.0, (min.z + max.z) / 2.0);
+        let to_middle = |edge: &Segment| edge.distance(middle);
+        let nearest = surface.iter().map(to_middle).fold(f64::INFINITY, f64::min);
+        let reach = nearest + min.distance(max) + GRAIN_MM;
+        let near: Vec<&Segment> = surface.iter().filter(|edge| to_middle(edge) <= reach).collect();
         let places = self
             .edges
             .iter()
             .flat_map(|edge| (0..LOOKS).map(move |look| edge.at(f64::from(look) / f64::from(LOOKS))));
         for place in places.collect::<Vec<_>>() {
-            let nearest = surface.iter().map(|edge| edge.distance(place)).fold(f64::INFINITY, f64::min);
+            let nearest = near.iter().map(|edge| edge.distance(place)).fold(f64::INFINITY, f64::min);
             if nearest > self.deviation_mm {
                 (self.deviation_mm, self.place) = (nearest, place);
             }

@@ -13,9 +13,11 @@ mod checks;
 pub mod comparison;
 pub mod cutting;
 mod edges;
+pub mod figures;
 mod inference;
 pub mod measuring;
 pub mod part;
+pub mod target;
 mod text;
 
 pub use checks::{Checked, Checks};

@@ -19,8 +19,11 @@ use turnwright_control::{Setup, SetupFault};
 use turnwright_diagnostics::{Diagnostic, Place, Severity, SourceId};
 use turnwright_geometry::{Bounds, Outline, Point};
 use turnwright_stock::machining::{Event, EventKind, Obstacle, RapidRates, ThreadMark, ToolShape};
-use turnwright_stock::{Contact, History, Machining, Removed, Section};
+use turnwright_stock::{History, Machining, Removed, Section};
 use turnwright_units::{Position, WorkTip};
+
+use crate::figures::{BlockLine, Figure};
+use crate::target::{Aimed, Loss, Target, Watch, deepest_in_reach, rest_of_figure};
 
 /// Moves that are cut out of the stock.
 pub const PART_MOVES_MAX: u64 = 5_000_000;
@@ -33,6 +36,15 @@ const FINDINGS_MAX: usize = 10;
 
 /// A rapid that overlaps the stock less than this drags along what the tool has just cut: it mars, it does not crash.
 const DRAG_MM: f64 = 0.5;
+
+/// What is cut below a figure that is finished is told from here on, mm: above all rounding of its corners.
+pub const FIGURE_GOUGE_MM: f64 = 0.01;
+
+/// What is left above it is told from here on, mm.
+pub const FIGURE_REST_MM: f64 = 0.05;
+
+/// At a limit a depth is within it, however numbers were rounded, mm.
+const ROUNDING_MM: f64 = 1e-6;
 
 /// Commands between two looks at the size of the section.
 const COMMANDS_PER_LOOK: u64 = 1024;
@@ -51,7 +63,13 @@ pub struct PartRun {
     edges: Edges,
     history: Option<History>,
     tools: BTreeMap<u32, ToolShape>,
+    /// Nose radii of the stations, mm.
+    noses: BTreeMap<u32, f64>,
     obstacles: Vec<(Obstacle, Outline)>,
+    /// Who looks through the guards of the machining, one each.
+    watches: Vec<Watch>,
+    /// What the part is held against, and the first of its watches.
+    target: Option<(Target, usize)>,
 }
 
 /// What came out.
@@ -75,6 +93,8 @@ pub struct Part {
     pub tools: BTreeMap<u32, ToolShape>,
     /// What stands around the work.
     pub obstacles: Vec<(Obstacle, Outline)>,
+    /// What the part is to be held against, unless not all of it was cut.
+    pub aimed: Option<Aimed>,
 }
 
 /// Where a finding is in the section.
@@ -132,8 +152,9 @@ impl PartRun {
             tools: given.tools.keys().filter_map(|name| name.parse().ok()).collect(),
             ..Notebook::default()
         };
-        let (mut tools, mut edges) = (BTreeMap::new(), Edges::default());
+        let (mut tools, mut noses, mut edges) = (BTreeMap::new(), BTreeMap::new(), Edges::default());
         for (station, tool) in setup.tools()? {
+            noses.insert(station, tool.nose_radius_mm);
             if notebook.has_stock && notebook.tools.contains(&station) {
                 edges.watch(station, &tool);
             }
@@ -164,8 +185,35 @@ impl PartRun {
             edges,
             history: None,
             tools,
+            noses,
             obstacles,
+            watches: Vec::new(),
+            target: None,
         }))
+    }
+
+    /// Looks whether the figures that the program finishes are cut too deep, or keep material.
+    #[must_use]
+    pub fn with_figures(mut self, figures: &[Figure]) -> Self {
+        for figure in figures {
+            let Some((watch, guard)) = Watch::of_figure(figure, self.machining.section()) else { continue };
+            self.watches.push(watch);
+            self.machining.add_guard(guard);
+        }
+        self
+    }
+
+    /// Holds the part against a target when it is finished; before the first command.
+    #[must_use]
+    pub fn with_target(mut self, target: Target) -> Self {
+        let first = self.watches.len();
+        if let Target::Drawing(drawing) = &target {
+            let (watch, guard) = Watch::of_drawing(drawing, self.machining.section());
+            self.watches.push(watch);
+            self.machining.add_guard(guard);
+        }
+        self.target = Some((target, first));
+        self
     }
 
     /// Keeps the section along the program.
@@ -181,16 +229,22 @@ impl PartRun {
             return None;
         }
         if matches!(command.action, Action::Thread { .. }) && self.plain.is_none() {
-            self.plain = Some(Box::new(self.machining.clone()));
+            self.plain = Some(Box::new(self.machining.without_guards()));
         }
         match command.action {
             Action::Rapid { .. } | Action::Feed { .. } | Action::Thread { .. } => self.moves += 1,
             Action::Tool { tool, .. } => self.notebook.tool = tool,
             _ => {}
         }
-        let Self { machining, notebook, edges, history, commands, .. } = self;
+        let Self { machining, notebook, edges, history, commands, watches, .. } = self;
+        for (watch, guard) in watches.iter().zip(machining.guards_mut()) {
+            guard.watch(watch.counts(command));
+        }
         let from = machining.at();
         let removed = machining.advance(command, &mut |event| notebook.tell(&event, *commands));
+        for (watch, guard) in watches.iter_mut().zip(machining.guards_mut()) {
+            watch.note(guard, from, command, (*commands, notebook.tool));
+        }
         if !edges.is_idle() {
             let ends = (from, machining.at());
             edges.add((command, *commands), notebook.tool, ends, &removed, machining.section());
@@ -238,9 +292,26 @@ impl PartRun {
         }
         let faults = self.edges.finish(self.machining.section(), self.machining.part());
         faults.iter().for_each(|fault| self.notebook.tell_fault(fault));
+        let plain = self.plain.as_deref().unwrap_or(&self.machining);
+        for watch in &self.watches {
+            let Some(figure) = watch.figure() else { continue };
+            self.notebook.gouged(&watch.losses);
+            let nose_mm = self.noses.get(&figure.tool).copied().unwrap_or(0.0);
+            if !self.is_full && self.notebook.knows(figure.tool) {
+                self.notebook.not_reached(figure, plain.part(), nose_mm, self.commands);
+            }
+        }
+        let aimed = self.target.filter(|_| !self.is_full).map(|(target, first)| {
+            let watches = match target {
+                Target::Drawing(_) => self.watches.split_off(first),
+                Target::Figures(_) => self.watches,
+            };
+            Aimed { target, watches }
+        });
         Part {
             section: self.machining.part().clone(),
-            plain: self.plain.as_deref().unwrap_or(&self.machining).part().clone(),
+            plain: plain.part().clone(),
+            aimed,
             stock: self.stock,
             threads: self.machining.threads().to_vec(),
             findings: self.notebook.findings,
@@ -258,6 +329,60 @@ fn place_of(origin: &Origin) -> Place {
 }
 
 impl Notebook {
+    /// Whether the setup names both the stock and a tool.
+    fn knows(&self, tool: u32) -> bool {
+        self.has_stock && self.tools.contains(&tool)
+    }
+
+    /// Cuts below a figure: of each line the deepest, unless it is told as a crash. Of a tool whose shape is a guess only
+    /// the programmed point counts.
+    fn gouged(&mut self, losses: &[Loss]) {
+        let mut deepest: BTreeMap<BlockLine, (f64, &Loss)> = BTreeMap::new();
+        for loss in losses {
+            let is_known = self.tools.contains(&loss.tool);
+            let depth_mm = if is_known { loss.piece.deviation_mm } else { loss.tip_mm };
+            let known = deepest.entry(loss.line).or_insert((0.0, loss));
+            if depth_mm > known.0 {
+                *known = (depth_mm, loss);
+            }
+        }
+        for (line, (depth_mm, loss)) in deepest {
+            let is_crash = self.told.get("rapid-into-stock").is_some_and(|told| told.contains(&line));
+            if is_crash || depth_mm <= FIGURE_GOUGE_MM + ROUNDING_MM {
+                continue;
+            }
+            let severity = if self.knows(loss.tool) { Severity::Error } else { Severity::Warning };
+            let mark = Mark {
+                key: "figure-gouged",
+                line: (SourceId(line.0), line.1),
+                command: loss.command,
+                place: loss.piece.place,
+                depth_mm,
+                bounds: Some(loss.piece.bounds),
+            };
+            self.note_depth(severity, mark, loss.tool);
+        }
+    }
+
+    /// What a finished figure keeps although the nose could have reached it.
+    fn not_reached(&mut self, figure: &Figure, part: &Section, nose_mm: f64, command: u64) {
+        let rests = rest_of_figure(figure, part);
+        let Some((depth_mm, place, line)) = deepest_in_reach(figure, &rests, nose_mm) else { return };
+        if depth_mm > FIGURE_REST_MM + ROUNDING_MM {
+            let line = (SourceId(figure.finishing.0), line);
+            let mark = Mark { key: "figure-not-reached", line, command, place, depth_mm, bounds: None };
+            self.note_depth(Severity::Warning, mark, figure.tool);
+        }
+    }
+
+    /// A finding at a line, with how deep it is.
+    fn note_depth(&mut self, severity: Severity, mark: Mark, tool: u32) {
+        let origin = Origin { source: mark.line.0.0, ..Origin::line(mark.line.1) };
+        if let Some(finding) = self.note(severity, mark, tool, &origin) {
+            *finding = finding.clone().with("depth", millimetres(mark.depth_mm));
+        }
+    }
+
     fn tell(&mut self, event: &Event, command: u64) {
         let has_tool = self.tools.contains(&self.tool);
         let judged = |is_known: bool| if is_known { Severity::Error } else { Severity::Warning };
@@ -292,7 +417,7 @@ impl Notebook {
         };
         let depth = contact.map_or_else(String::new, |contact| millimetres(contact.depth_mm));
         if let Some(finding) = self.note(severity, mark, self.tool, &event.origin) {
-            let value = contact.map_or_else(String::new, size);
+            let value = contact.map_or_else(String::new, |contact| size(contact.bounds));
             *finding = finding.clone().with("depth", depth).with("value", value);
         }
     }
@@ -345,7 +470,6 @@ fn millimetres(mm: f64) -> String {
 }
 
 /// Greatest diameter and length.
-fn size(contact: &Contact) -> String {
-    let bounds = &contact.bounds;
+fn size(bounds: Bounds) -> String {
     format!("⌀{} × {} mm", millimetres(2.0 * bounds.max.x), millimetres(bounds.max.z - bounds.min.z))
 }

@@ -19,6 +19,7 @@ use crate::finding::Finding;
 use crate::output::sarif::{self, SarifResult};
 use crate::part;
 use crate::render::Printer;
+use crate::report::Measure;
 use crate::session::Session;
 use crate::speech::Speech;
 
@@ -193,8 +194,9 @@ fn find(text: &ProgramText, options: &Check, printer: &Printer) -> Vec<Finding> 
             checks.add(&command);
         }
         let checked = checks.finish(&session.setup);
-        let setup = &checked.inferred.setup;
-        let part = part::machined(text, &session, &options.machine, setup, None, &mut |_, _| Ok(()));
+        let mut look = |_: &Execution<'_>, _: &mut Measure| Ok(());
+        let inferred = &checked.inferred;
+        let part = part::machined(text, &session, &options.machine, inferred, None, None, &mut look);
         let part = part.ok().flatten();
         let judged = part::judged(part.as_ref(), &session.setup, execution.alarm());
         let of_text = of_text(text);

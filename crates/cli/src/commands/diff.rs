@@ -121,9 +121,9 @@ impl Side {
         let checked = checks.finish(&session.setup);
         let rates = rates(&machine, &session.control.parameters, options.optional_stop);
         let mut measure = Measure::new(start, rates, Kept::default());
-        let setup = &checked.inferred.setup;
         let mut look = |_: &Execution<'_>, _: &mut Measure| Ok(());
-        let part = part::machined(&text, &session, options, setup, Some(&mut measure), &mut look)?;
+        let part =
+            part::machined(&text, &session, options, &checked.inferred, None, Some(&mut measure), &mut look)?;
         let judged = part::judged(part.as_ref(), &session.setup, execution.alarm());
         let of_part = part.iter().flat_map(|part| part.findings.clone()).collect::<Vec<_>>();
         let told = checked.findings.into_iter().chain(measure.warnings()).chain(of_part);
@@ -419,6 +419,8 @@ impl<'a> Difference<'a> {
             subtitle,
             loops: both.contours().into_iter().map(|contour| contour.segments).collect(),
             figure: Vec::new(),
+            strokes: Vec::new(),
+            scale: Vec::new(),
             regions: self.pieces().map(region).collect(),
             legend: vec![
                 ("#d43d51", speech.get("diff-old-only").to_string()),

@@ -1,19 +1,22 @@
 //! `turnwright measure`: the caliper on the part that a program cuts.
 //!
-//! In: one program. Out: what it measures at places, or all its sizes, and whether those of the setup file are in
-//! tolerance.
+//! In: one program, and perhaps a target. Out: what it measures at places, or all its sizes, whether those of the setup file
+//! are in tolerance, and how far the part is off its target.
 
 use std::io::Write;
 
 use serde_json::{Value, json};
 use turnwright_control::Material;
 use turnwright_diagnostics::{Diagnostic, Severity};
+use turnwright_export::formats::overlay_svg::write_overlay_svg;
 use turnwright_export::formats::part_svg::mm;
 use turnwright_stock::machining::ThreadHand;
 use turnwright_verify::Inference;
 use turnwright_verify::measuring::{self, Found, Groove, Judged, Opening, Ring, Sizes, Thread};
 use turnwright_verify::part::Part;
 
+use super::plot::write_picture;
+use super::target::{self, Held};
 use crate::arguments::{LookupFormat, Measure};
 use crate::environment::ProgramText;
 use crate::execution::Execution;
@@ -21,6 +24,7 @@ use crate::fault::{Fault, Status};
 use crate::finding::Finding;
 use crate::part;
 use crate::render::Printer;
+use crate::report;
 use crate::report::sizes::{judged_json, judged_text, z_text};
 use crate::session::Session;
 use crate::speech::Speech;
@@ -35,18 +39,33 @@ pub(crate) fn run(options: &Measure, printer: &Printer) -> Result<Status, Fault>
     let speech = printer.speech;
     let text = ProgramText::open(&options.file, speech)?;
     let session = Session::choose(&text, &options.machine, speech)?;
+    let aim = target::aim(options, speech)?;
     let mut execution = Execution::new(&text, &session, &options.machine)?;
     let mut inference = Inference::new(execution.interpreter().position());
     while let Some(command) = execution.next_command() {
         inference.add(&command);
     }
-    let setup = inference.finish(&session.setup).setup;
-    let mut part = part::machined(&text, &session, &options.machine, &setup, None, &mut |_, _| Ok(()))?;
+    let inferred = inference.finish(&session.setup);
+    let mut look = |_: &Execution<'_>, _: &mut report::Measure| Ok(());
+    let mut part =
+        part::machined(&text, &session, &options.machine, &inferred, aim.as_ref(), None, &mut look)?;
     let judged = part::judged(part.as_ref(), &session.setup, execution.alarm());
     if let Some(part) = &mut part {
         part.findings.drain(..).for_each(|finding| execution.warn(finding));
     }
     part::out_of_tolerance(&judged).for_each(|finding| execution.warn(finding));
+    let judgement = part.as_mut().and_then(target::judgement);
+    let held =
+        judgement.as_ref().map(|(judgement, _)| Held { judgement, given: &session.setup, options, speech });
+    match &held {
+        Some(held) => held.findings().into_iter().for_each(|finding| execution.warn(finding)),
+        None if aim.is_some() => execution.warn(Diagnostic::error("target-without-figure")),
+        None => {}
+    }
+    if let (Some(held), Some((_, shown)), Some(output)) = (&held, &judgement, &options.output) {
+        let title = text.name.rsplit('/').next().unwrap_or(&text.name).to_string();
+        write_picture(output, &write_overlay_svg(&held.overlay(shown, title)), speech)?;
+    }
     let mut findings = execution.findings();
     // What is only worth a look has its place in `check`; that the part is another one than shown matters here.
     findings.retain(|finding| {
@@ -57,6 +76,7 @@ pub(crate) fn run(options: &Measure, printer: &Printer) -> Result<Status, Fault>
     let measured = Measured {
         part: part.as_ref().zip(sizes),
         judged,
+        held,
         // A material that is not known was refused when the setup was read.
         material: session.setup.material().unwrap_or_default(),
         options,
@@ -86,6 +106,7 @@ pub(crate) fn run(options: &Measure, printer: &Printer) -> Result<Status, Fault>
 struct Measured<'a> {
     part: Option<(&'a Part, Sizes)>,
     judged: Vec<Judged>,
+    held: Option<Held<'a>>,
     material: Option<&'static Material>,
     options: &'a Measure,
     speech: Speech,
@@ -107,7 +128,10 @@ impl Measured<'_> {
         let speech = self.speech;
         let Some((_, sizes)) = &self.part else { return format!("{}\n", speech.get("measure-no-part")) };
         let mut out = String::new();
-        if self.options.at.is_empty() {
+        if let Some(held) = &self.held {
+            out.push_str(&held.human());
+        }
+        if self.options.at.is_empty() && self.options.target.is_none() {
             let volume = mm(sizes.volume_mm3 / 1000.0);
             let whole = [("d", mm(sizes.diameter_mm)), ("l", mm(sizes.length_mm())), ("v", volume)];
             out.push_str(&heading(&filled(speech, "measure-whole", &whole)));
@@ -125,7 +149,7 @@ impl Measured<'_> {
             }
             out.push('\n');
             out.push_str(&table(sizes, speech));
-        } else {
+        } else if !self.options.at.is_empty() {
             let rows: Vec<(String, String)> =
                 self.found().iter().map(|found| found_text(found, speech)).collect();
             out.push_str(&facts(&rows));
@@ -149,6 +173,7 @@ impl Measured<'_> {
         });
         answer["material"] = json!(self.material.map(|material| &material.name));
         answer["at"] = self.found().iter().map(found_json).collect();
+        answer["target"] = self.held.as_ref().map_or(Value::Null, Held::json);
         answer["measures"] = Value::Array(judged_json(&self.judged));
         answer
     }

@@ -13,6 +13,7 @@ mod passes;
 mod plot;
 mod run;
 mod setup;
+mod target;
 mod time;
 mod trace;
 

@@ -14,7 +14,7 @@ use crate::fault::{Fault, Status};
 use crate::output::{PartFile, WholeFile};
 use crate::part;
 use crate::render::Printer;
-use crate::report::picture_language;
+use crate::report::{Measure, picture_language};
 use crate::session::Session;
 
 /// Runs the program and writes its part.
@@ -28,8 +28,9 @@ pub(crate) fn run(options: &PartOptions, printer: &Printer) -> Result<Status, Fa
     while let Some(command) = execution.next_command() {
         inference.add(&command);
     }
-    let setup = inference.finish(&session.setup).setup;
-    let mut part = part::machined(&text, &session, &options.machine, &setup, None, &mut |_, _| Ok(()))?;
+    let inferred = inference.finish(&session.setup);
+    let mut look = |_: &Execution<'_>, _: &mut Measure| Ok(());
+    let mut part = part::machined(&text, &session, &options.machine, &inferred, None, None, &mut look)?;
     if let Some(part) = &mut part {
         part.findings.drain(..).for_each(|finding| execution.warn(finding));
     }

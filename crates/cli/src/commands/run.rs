@@ -87,7 +87,8 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     // What cannot be was refused when the setup was read.
     let material = session.setup.material().unwrap_or_default();
     measure.cutting = Some(CuttingRun::new(setup.tools().unwrap_or_default(), material));
-    let mut part = part::machined(&text, &session, asked, setup, Some(&mut measure), &mut look)?;
+    let mut part =
+        part::machined(&text, &session, asked, &checked.inferred, None, Some(&mut measure), &mut look)?;
     progress.finish();
     measure.warnings().for_each(|warning| execution.warn(warning));
     if let Some(part) = &mut part {

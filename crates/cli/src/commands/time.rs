@@ -97,7 +97,7 @@ fn one(path: &Path, options: &Time, printer: &Printer) -> Result<Status, Fault> 
     };
     let (setup, asked) = (&checked.inferred.setup, &options.machine);
     measure.advisor = Some(Advisor::new(setup, rates));
-    part::machined(&text, &session, asked, setup, Some(&mut measure), &mut look)?;
+    part::machined(&text, &session, asked, &checked.inferred, None, Some(&mut measure), &mut look)?;
     progress.finish();
     pour(table.as_mut(), &mut measure, 0)?;
     if let Some(table) = table {

@@ -4,6 +4,7 @@
 //! sentence each. Out: one SVG text with nothing outside itself: chuck left, Z to the right, both halves of the section,
 //! one scale for both.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use turnwright_geometry::{Point, Segment};
@@ -15,6 +16,7 @@ const WIDTH_PX: f64 = 1200.0;
 const HEIGHT_PX: f64 = 640.0;
 const MARGIN_PX: f64 = 60.0;
 const TOP_PX: f64 = 110.0;
+const SCALE_PX: f64 = 34.0;
 const LINE_PX: f64 = 22.0;
 
 /// Marks that are drawn.
@@ -38,6 +40,15 @@ pub struct OverlayMark {
     pub text: String,
 }
 
+/// A stroke of the line that the part is held against, in the colour of its deviation.
+#[derive(Clone, Copy, Debug)]
+pub struct Stroke {
+    /// The line or arc.
+    pub way: Segment,
+    /// Its colour.
+    pub colour: &'static str,
+}
+
 /// What is drawn.
 #[derive(Clone, Debug, Default)]
 pub struct Overlay {
@@ -49,10 +60,14 @@ pub struct Overlay {
     pub loops: Vec<Vec<Segment>>,
     /// What the part is held against, as a line.
     pub figure: Vec<Segment>,
+    /// The same line in colours, instead of dashes.
+    pub strokes: Vec<Stroke>,
     /// What is in colour.
     pub regions: Vec<Region>,
     /// Colours with their meaning.
     pub legend: Vec<(&'static str, String)>,
+    /// Colours of the strokes with their meaning.
+    pub scale: Vec<(&'static str, String)>,
     /// Numbered places.
     pub marks: Vec<OverlayMark>,
     /// Language of the document.
@@ -83,12 +98,13 @@ pub fn write_overlay_svg(overlay: &Overlay) -> String {
     let back = places().map(|place| place.z).fold(f64::INFINITY, f64::min);
     let front = places().map(|place| place.z).fold(f64::NEG_INFINITY, f64::max);
     let (back, front) = if back < front { (back, front) } else { (-1.0, 0.0) };
-    let free = (WIDTH_PX - 2.0 * MARGIN_PX, HEIGHT_PX - TOP_PX - MARGIN_PX);
+    let top_px = if overlay.scale.is_empty() { TOP_PX } else { TOP_PX + SCALE_PX };
+    let free = (WIDTH_PX - 2.0 * MARGIN_PX, HEIGHT_PX - top_px - MARGIN_PX);
     let px_per_mm = (free.0 / (front - back)).min(free.1 / (2.0 * radius));
     let sheet = Sheet {
         px_per_mm,
         zero_px: WIDTH_PX / 2.0 - (front + back) / 2.0 * px_per_mm,
-        axis_px: TOP_PX + radius * px_per_mm,
+        axis_px: top_px + radius * px_per_mm,
     };
     let marks = &overlay.marks[..overlay.marks.len().min(MARKS_MAX)];
     let list_px = sheet.axis_px + radius * px_per_mm + 40.0;
@@ -105,7 +121,8 @@ pub fn write_overlay_svg(overlay: &Overlay) -> String {
          <text class=\"subtitle\" x=\"{MARGIN_PX}\" y=\"54\">{subtitle}</text>\n",
         overlay.language.tag()
     );
-    write_legend(&mut svg, overlay);
+    write_legend(&mut svg, "legend", 68.0, &overlay.legend);
+    write_legend(&mut svg, "scale", 90.0, &overlay.scale);
     let mut data = String::new();
     for side in [1.0, -1.0] {
         overlay.loops.iter().for_each(|edges| write_edges(&mut data, &sheet, edges, side));
@@ -135,6 +152,7 @@ pub fn write_overlay_svg(overlay: &Overlay) -> String {
         svg,
         "<path class=\"figure\" d=\"{data}\" fill=\"none\" stroke=\"#111\" stroke-width=\"1\" stroke-dasharray=\"7 4\"/>"
     );
+    write_strokes(&mut svg, &sheet, &overlay.strokes);
     let (left, right) = (sheet.zero_px + back * px_per_mm - 24.0, sheet.zero_px + front * px_per_mm + 24.0);
     let _ = writeln!(
         svg,
@@ -148,18 +166,36 @@ pub fn write_overlay_svg(overlay: &Overlay) -> String {
     svg
 }
 
-fn write_legend(svg: &mut String, overlay: &Overlay) {
+fn write_legend(svg: &mut String, class: &str, y: f64, entries: &[(&'static str, String)]) {
     let mut x = MARGIN_PX;
-    for (fill, text) in &overlay.legend {
+    for (fill, text) in entries {
         let _ = writeln!(
             svg,
-            "<rect x=\"{x:.0}\" y=\"68\" width=\"16\" height=\"12\" fill=\"{fill}\" fill-opacity=\"0.75\"/>\n\
-             <text class=\"legend\" x=\"{:.0}\" y=\"79\">{}</text>",
+            "<rect x=\"{x:.0}\" y=\"{y:.0}\" width=\"16\" height=\"12\" fill=\"{fill}\" fill-opacity=\"0.75\"/>\n\
+             <text class=\"{class}\" x=\"{:.0}\" y=\"{:.0}\">{}</text>",
             x + 22.0,
+            y + 11.0,
             escape_xml(text)
         );
         let width: f64 = text.chars().map(|c| if c.is_ascii() { 7.5 } else { 14.0 }).sum();
-        x += width + 60.0;
+        x += width + 48.0;
+    }
+}
+
+/// Strokes of one colour are one path.
+fn write_strokes(svg: &mut String, sheet: &Sheet, strokes: &[Stroke]) {
+    let mut paths: BTreeMap<&str, String> = BTreeMap::new();
+    for stroke in strokes {
+        let data = paths.entry(stroke.colour).or_default();
+        for side in [1.0, -1.0] {
+            write_edges(data, sheet, &[stroke.way], side);
+        }
+    }
+    for (colour, data) in paths {
+        let _ = writeln!(
+            svg,
+            "<path class=\"deviation\" d=\"{data}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2.4\"/>"
+        );
     }
 }
 
@@ -171,7 +207,7 @@ fn write_mark(svg: &mut String, sheet: &Sheet, number: usize, mark: &OverlayMark
         "<path d=\"M{x:.1} {y:.1}L{up_x:.1} {up_y:.1}\" stroke=\"#111\"/>\n\
          <circle cx=\"{up_x:.1}\" cy=\"{up_y:.1}\" r=\"10\" fill=\"#fff\" stroke=\"#111\"/>\n\
          <text x=\"{up_x:.1}\" y=\"{:.1}\" font-size=\"12\" text-anchor=\"middle\">{number}</text>\n\
-         <text class=\"mark\" x=\"{MARGIN_PX}\" y=\"{y_list:.1}\">{number}  {}</text>",
+         <text class=\"mark\" x=\"{MARGIN_PX}\" y=\"{y_list:.1}\">{number}: {}</text>",
         up_y + 4.0,
         escape_xml(&mark.text)
     );

@@ -56,6 +56,7 @@ impl Nose {
 impl Core {
     /// The nose of the offset in force.
     pub(crate) const fn nose(&self) -> Nose {
-        Nose { radius: self.modal.offset_in_force.nose_radius, tip: self.modal.offset_in_force.tip }
+        let offset = &self.modal.offset_in_force;
+        Nose { radius: if self.has_sharp_noses { Length::ZERO } else { offset.nose_radius }, tip: offset.tip }
     }
 }

@@ -17,6 +17,7 @@
 //! Invariant: memory does not grow with the number of commands, but only with the section's edges.
 
 mod event;
+mod guard;
 mod threads;
 mod ways;
 
@@ -27,8 +28,10 @@ use turnwright_geometry::{Outline, Point, Segment};
 use turnwright_units::{Position, WorkTip};
 
 pub use self::event::{Event, EventKind, Obstacle};
+pub use self::guard::{Guard, LOSSES_MAX};
 use self::threads::{Phase, ThreadCut, ThreadMarks};
 pub use self::threads::{THREADS_MAX, TURNS_MAX, ThreadHand, ThreadMark};
+pub use self::ways::edges;
 use self::ways::{point, rapid_ways, ways};
 use crate::removed::{Contact, Removed};
 use crate::section::{Section, SectionFault};
@@ -76,6 +79,7 @@ pub struct Machining {
     held_z: f64,
     tools: BTreeMap<u32, Tool>,
     obstacles: Vec<(Obstacle, Section)>,
+    guards: Vec<Guard>,
     rates: RapidRates,
     at: Position<WorkTip>,
     place: SectionPlace,
@@ -99,6 +103,7 @@ impl Machining {
             fallen: None,
             tools: BTreeMap::new(),
             obstacles: Vec::new(),
+            guards: Vec::new(),
             rates,
             at: start,
             place: SectionPlace::default(),
@@ -130,6 +135,22 @@ impl Machining {
     /// Where the tool's programmed point is.
     pub const fn at(&self) -> Position<WorkTip> {
         self.at
+    }
+
+    /// Material of which it is told what is lost.
+    pub fn add_guard(&mut self, guard: Guard) {
+        self.guards.push(guard);
+    }
+
+    /// The guards, in the order in which they were added.
+    pub fn guards_mut(&mut self) -> &mut [Guard] {
+        &mut self.guards
+    }
+
+    /// The same with nothing guarded.
+    #[must_use]
+    pub fn without_guards(&self) -> Self {
+        Self { guards: Vec::new(), ..self.clone() }
     }
 
     /// What is left.
@@ -234,7 +255,7 @@ impl Machining {
         if let Some(contact) = deep(self.section.touches(&self.sweep)) {
             let place = || first_touch(&self.section, &tool.cutting, way);
             teller.tell(EventKind::RapidIntoStock, Some(contact), place);
-            removed = self.section.cut(&self.sweep);
+            removed = take(&mut self.section, &mut self.guards, &self.sweep);
         }
         self.look_around(way, teller);
         self.let_fall(&removed, way.end, teller);
@@ -245,7 +266,8 @@ impl Machining {
         let Some(tool) = shape(&self.tools, self.tool, &mut self.unknown, Some((way, &mut *teller))) else {
             return Removed::default();
         };
-        let removed = self.section.cut(self.sweep.along(&tool.cutting, way));
+        self.sweep.along(&tool.cutting, way);
+        let removed = take(&mut self.section, &mut self.guards, &self.sweep);
         self.judge(&removed, way, teller);
         removed
     }
@@ -287,11 +309,13 @@ impl Machining {
         for way in ways(from, self.at, form) {
             let Some(turns) = self.phase.turns(&way, lead_mm) else {
                 // So fine that it is no thread: a plain cut.
-                removed = removed.and(self.section.cut(self.sweep.along(&tool.cutting, &way)));
+                self.sweep.along(&tool.cutting, &way);
+                removed = removed.and(take(&mut self.section, &mut self.guards, &self.sweep));
                 continue;
             };
             for place in turns {
-                removed = removed.and(self.section.cut(self.sweep.rest(&tool.cutting, place)));
+                self.sweep.rest(&tool.cutting, place);
+                removed = removed.and(take(&mut self.section, &mut self.guards, &self.sweep));
             }
         }
         if let Some(bounds) = removed.bounds {
@@ -403,6 +427,16 @@ fn shape<'a>(
         teller.tell(EventKind::NoShape { tool: number }, None, || way.start);
     }
     tool
+}
+
+/// Takes what a sweep passes over away. What is guarded was part of the stock, so that it loses nothing where the stock
+/// does not.
+fn take(section: &mut Section, guards: &mut [Guard], sweep: &Sweep) -> Removed {
+    let removed = section.cut(sweep);
+    if removed.is_something() {
+        guards.iter_mut().for_each(|guard| guard.cut(sweep));
+    }
+    removed
 }
 
 /// A contact that counts.

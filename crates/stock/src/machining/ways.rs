@@ -50,6 +50,11 @@ pub(super) enum Ways {
     Conic(Point, CurveArcs),
 }
 
+/// The lines and arcs of a cutting move: ellipses and parabolas become arcs.
+pub fn edges(from: Position<WorkTip>, to: Position<WorkTip>, shape: &Shape) -> impl Iterator<Item = Segment> {
+    ways(from, to, shape)
+}
+
 pub(super) fn ways(from: Position<WorkTip>, to: Position<WorkTip>, shape: &Shape) -> Ways {
     let one = |bend| Ways::One(Some(Segment { start: point(from), end: point(to), bend }));
     match shape {

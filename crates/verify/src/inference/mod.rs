@@ -19,6 +19,7 @@ use turnwright_diagnostics::Argument;
 use turnwright_units::{Position, WorkTip};
 
 use self::observation::Observation;
+use crate::figures::{FigureSearch, Figures};
 
 /// Tools that are told apart; turrets have fewer stations.
 const TOOLS_MAX: usize = 100;
@@ -66,6 +67,8 @@ pub struct Inferred {
     pub setup: Setup,
     /// What was added.
     pub assumptions: Vec<Assumption>,
+    /// The figures that the program finishes.
+    pub figures: Figures,
 }
 
 /// Looks at a program while it runs.
@@ -76,17 +79,20 @@ pub struct Inference {
     station: u32,
     current: Observation,
     at: Position<WorkTip>,
+    figures: FigureSearch,
 }
 
 impl Inference {
     /// Nothing seen yet, the tool at `start`.
     pub fn new(start: Position<WorkTip>) -> Self {
-        Self { tools: BTreeMap::new(), station: 0, current: Observation::default(), at: start }
+        let figures = FigureSearch::new(start);
+        Self { tools: BTreeMap::new(), station: 0, current: Observation::default(), at: start, figures }
     }
 
     /// Looks at a command.
     #[inline]
     pub fn add(&mut self, command: &Command) {
+        self.figures.add(command);
         match &command.action {
             Action::Tool { tool, .. } => self.change(*tool),
             Action::Relocate { to, .. } => self.at = *to,
@@ -110,7 +116,8 @@ impl Inference {
 
     /// The given setup with what the program shows.
     pub fn finish(mut self, given: &Setup) -> Inferred {
-        let mut inferred = Inferred { setup: given.clone(), assumptions: Vec::new() };
+        let figures = self.figures.finish();
+        let mut inferred = Inferred { setup: given.clone(), assumptions: Vec::new(), figures };
         self.change(u32::MAX);
         // What moves before any tool is called is the first tool's doing.
         if let Some(unnamed) = self.tools.remove(&0)

@@ -43,13 +43,23 @@ pub fn checked_keys(run: &Run, setup: &Setup) -> Vec<&'static str> {
 
 /// Runs a program on a control with a setup.
 pub fn run(text: &str, control: &str, setup: &Setup) -> Run {
+    run_with(text, control, setup, |interpreter| interpreter)
+}
+
+/// The same with sharp tools.
+pub fn run_sharp(text: &str, control: &str, setup: &Setup) -> Run {
+    run_with(text, control, setup, Interpreter::with_sharp_noses)
+}
+
+fn run_with(text: &str, control: &str, setup: &Setup, kind: fn(Interpreter) -> Interpreter) -> Run {
     let mut control = Control::load(control).unwrap_or_else(|fault| panic!("{fault:?}"));
     for (number, value) in setup.parameter_words() {
         control.parameters.set(&number, &value).unwrap_or_else(|fault| panic!("{fault:?}"));
     }
     let options = Options { blocks_max: 100_000, idle_blocks_max: 100_000 };
-    let mut interpreter =
+    let interpreter =
         Interpreter::new(control, setup, SourceId(0), options).unwrap_or_else(|fault| panic!("{fault:?}"));
+    let mut interpreter = kind(interpreter);
     let mut checks = TextChecks::default();
     text.lines().for_each(|line| checks.add(line.as_bytes()));
     let mut run = Run {
