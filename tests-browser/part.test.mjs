@@ -5,7 +5,7 @@
 // TURNWRIGHT_CHROMIUM  path of the browser, /usr/bin/chromium without it
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync, statSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync, statSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { after, afterEach, before, test } from "node:test";
@@ -343,6 +343,43 @@ test("on a phone the lanes are as wide as the page, and no wider", async () => {
   await page.setViewportSize({ width: 800, height: 600 });
   await settle();
   assert.ok((await page.locator("#plots svg").boundingBox()).width > 700, "turned to the side they grow");
+});
+
+test("where several cuts are shown as one the page says so, and each of their lines leads there", async () => {
+  // As if the move of line 14 were those of lines 14 and 15, which is shaped by another one.
+  const joined = path.join(folder, "joined.html"), text = readFileSync(drawn, "utf8");
+  await open(drawn);
+  assert.equal(await page.locator("#joined").isVisible(), false);
+  const move = await page.evaluate(() => turnwright.linesOfMoves().indexOf(21));
+  assert.ok(text.includes(`"joined_mm":0,`));
+  writeFileSync(joined, text.replace('"joined_mm":0,', '"joined_mm":0.004,').replace('"joined":[]', `"joined":[${move},25]`));
+  await page.context().close();
+  await open(joined);
+  assert.match(await page.textContent("#joined"), /within 0\.004 mm/);
+  await page.click("#line-25");
+  assert.equal(await page.evaluate(() => turnwright.currentLine), 21);
+  await page.evaluate((move) => turnwright.goTo(move + 1), move);
+  assert.match(await page.textContent("#readout"), /lines 21 to 25/);
+  await page.keyboard.press("l");
+  assert.match(await page.textContent("#joined"), /0\.004/);
+});
+
+test("a long program: the section follows at once as far as it is known, and exactly when the hand rests", async () => {
+  const waves = Array.from({ length: 12 }, (_, pass) => ["G0 X52. Z1.", `G1 X${48 - pass} F0.2`,
+    ...Array.from({ length: 1500 }, (_, n) => `X${(48 - pass + 0.5 * Math.sin(n / 30)).toFixed(3)} Z${(-n / 50).toFixed(3)}`), "G0 X60."].join("\n"));
+  const long = reportOf("long", DRAWN.replace(/G0 X52[^]*M30/, `${waves.join("\n")}\nM30`));
+  await open(long);
+  assert.ok((await page.evaluate(() => turnwright.steps)) > 18000);
+  // Between two moments, far from both.
+  const shown = () => page.evaluate(() => document.getElementById("layer-stock").toDataURL());
+  await page.evaluate(() => turnwright.goTo(9000));
+  await page.evaluate(() => new Promise((done) => setTimeout(done, 400)));
+  const [exact, area] = [await shown(), await page.evaluate(() => turnwright.sectionArea)];
+  for (const step of [9010, 100, 17000, 9000]) await page.evaluate((step) => turnwright.goTo(step), step);
+  await page.waitForFunction((exact) => document.getElementById("layer-stock").toDataURL() === exact, exact);
+  // Cuts in the same direction are taken away together where that is as exact: the last moment agrees.
+  const areas = await page.evaluate(() => [8999, 9000, 9001].map((step) => (turnwright.goTo(step), turnwright.sectionArea)));
+  assert.ok(areas[0] >= areas[1] && areas[1] >= areas[2] && Math.abs(areas[1] - area) < 0.02, `${areas} ${area}`);
 });
 
 test("--no-3d leaves three.js out, and the button with it", async () => {

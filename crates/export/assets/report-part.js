@@ -183,8 +183,8 @@ const partModel = (part, path, geometry) => {
   const toolOf = (move) => tools.get(path.tool[move]);
 
   // ---- a section on the way ------------------------------------------------------------------------------
-  const KEPT = 64;
-  const kept = [stock];   // the section after 0, 64, 128… moments
+  const KEPT = 16;
+  const kept = [stock];   // the section after 0, 16, 32… moments
   let slabs = [...stock], count = 0, done = 0, version = 0;
   const apply = () => {
     for (const { from, to, slabs: fresh } of moments[count].windows) cutBy(slabs, from, to, fresh);
@@ -204,6 +204,33 @@ const partModel = (part, path, geometry) => {
     let low = 0, high = moments.length;
     while (low < high) { const middle = (low + high) >> 1; if (moments[middle].step <= step) low = middle + 1; else high = middle; }
     return low;
+  };
+  // Cuts along a straight way.
+  const cutStraight = (from, { places }, [x, z], [toX, toZ]) => {
+    const hull = hullOf([...places.map(([pz, px]) => [pz + z, px + x]), ...places.map(([pz, px]) => [pz + toZ, px + toX])]);
+    takeOut(from, hull);
+    if (hull.least < 0) takeOut(from, mirrored(hull));
+  };
+  // How far the straight cuts from a move on are one within the tolerance: the first move that is not.
+  const straightTo = (move, limit) => {
+    const isPlain = (one) => path.kind[one] === 1 && path.tool[one] === path.tool[move]
+      && geometry.segmentEnd(one) === path.first[one] + 1 && geometry.sweep[path.first[one]] === 0;
+    if (!isPlain(move) || !toolOf(move)?.convex) return move + 1;
+    const start = geometry.along(path.first[move], 0), through = [];
+    let to = move + 1, [x, z] = geometry.along(path.first[move], 1);
+    for (; to < limit && to - move < 32 && isPlain(to); to++) {
+      const [fromX, fromZ] = geometry.along(path.first[to], 0), end = geometry.along(path.first[to], 1);
+      if (fromX !== x || fromZ !== z) break;
+      through.push([x, z]);
+      const [wayX, wayZ] = [end[0] - start[0], end[1] - start[1]], square = wayX * wayX + wayZ * wayZ;
+      const isNear = ([px, pz]) => {
+        const t = square > 0 ? Math.max(0, Math.min(1, ((px - start[0]) * wayX + (pz - start[1]) * wayZ) / square)) : 0;
+        return Math.hypot(px - start[0] - wayX * t, pz - start[1] - wayZ * t) <= CHORD_MM;
+      };
+      if (!through.every(isNear)) break;
+      [x, z] = end;
+    }
+    return to;
   };
   // Cuts a share of a move; of a thread what the next moment shows of the stretch that it has gone.
   const cutMove = (from, move, share) => {
@@ -234,21 +261,26 @@ const partModel = (part, path, geometry) => {
       let [x, z] = geometry.along(i, 0);
       for (let n = 1; n <= chords; n++) {
         const [toX, toZ] = geometry.along(i, part * n / chords);
-        const hull = hullOf([...tool.places.map(([pz, px]) => [pz + z, px + x]), ...tool.places.map(([pz, px]) => [pz + toZ, px + toX])]);
-        takeOut(from, hull);
-        if (hull.least < 0) takeOut(from, mirrored(hull));
+        cutStraight(from, tool, [x, z], [toX, toZ]);
         [x, z] = [toX, toZ];
       }
       left -= length;
     }
   };
-  // The section after so many moves and a share of the next; its version changes whenever the section does.
-  const sectionAt = (step, share) => {
+  // The section after so many moves and a share of the next; its version changes whenever the section does. When more
+  // moves than `most` would have to be cut for it, it is that of the last moment, and says so.
+  const sectionAt = (step, share, most = Infinity) => {
     const wanted = momentsUpTo(step);
     if (wanted < count || (wanted === count && step < done)) back(wanted);
     while (count < wanted) apply();
     if (count === moments.length) return { slabs, version: `${version}` };
-    for (let move = done; move < step; move++) { cutMove(slabs, move, 1); version++; }
+    if (step - done > most) return { slabs, version: `${version}`, isEarly: true };
+    for (let move = done; move < step; version++) {
+      const to = straightTo(move, step);
+      if (to === move + 1) cutMove(slabs, move, 1);
+      else cutStraight(slabs, toolOf(move), geometry.along(path.first[move], 0), geometry.along(path.first[to - 1], 1));
+      move = to;
+    }
     done = Math.max(done, step);
     if (share === 0) return { slabs, version: `${version}` };
     const way = [...slabs];

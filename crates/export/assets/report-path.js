@@ -1,9 +1,46 @@
 // The path of a report as typed arrays, and what is asked of its geometry. In: the columns of the run's `path`.
 // Coordinates are millimetres, X as a radius; angles turn from Z towards X.
 "use strict";
+// The columns as they were written: ends and times add up, the others are runs of how many and which value.
+const readPath = (written) => {
+  const { moves } = written;
+  const runs = (numbers, Kind = Uint32Array) => {
+    const column = new Kind(moves);
+    for (let j = 0, at = 0; j < numbers.length; at += numbers[j], j += 2) column.fill(numbers[j + 1], at, at + numbers[j]);
+    return column;
+  };
+  const addUp = (column) => { for (let i = 1; i < column.length; i++) column[i] += column[i - 1]; return column; };
+  const ends = new Float64Array(written.ends);
+  for (let i = 2; i < ends.length; i++) ends[i] += ends[i - 2];
+  for (let i = 0; i < ends.length; i++) ends[i] /= 1e4;
+  const elapsed = addUp(new Float64Array(written.elapsed));
+  for (let i = 0; i < moves; i++) elapsed[i] /= 1e3;
+  const advance = runs(written.advance, Float64Array);
+  for (let i = 0; i < moves; i++) advance[i] /= 1e5;
+  const [kind, phase, unit] = ["kind", "phase", "unit"].map((name) => runs(written[name], Uint8Array));
+  const [figure, cycle, pass, tool] = ["figure", "cycle", "pass", "tool"].map((name) => runs(written[name]));
+  const [first, line] = ["first", "line"].map((name) => Uint32Array.from(addUp(runs(written[name], Float64Array))));
+  // The last line of each move, which is another one where several moves are shown as one.
+  const lastLine = Uint32Array.from(line);
+  for (let j = 0; j < written.joined.length; j += 2) lastLine[written.joined[j]] = written.joined[j + 1];
+  return { ...written, ends, elapsed, advance, kind, phase, unit, figure, cycle, pass, tool, first, line, lastLine };
+};
+
+// Moves by line, in the order of the moves. `each` is called with what takes a line and a move.
+const indexByLine = (each) => {
+  let lines = 0, all = 0;
+  each((line) => { lines = Math.max(lines, line); all++; });
+  const starts = new Uint32Array(lines + 2), moves = new Uint32Array(all);
+  each((line) => { starts[line + 1]++; });
+  for (let line = 1; line < starts.length; line++) starts[line] += starts[line - 1];
+  const filled = starts.slice();
+  each((line, move) => { moves[filled[line]++] = move; });
+  return (line) => (line > 0 && line <= lines ? moves.subarray(starts[line], starts[line + 1]) : moves.subarray(0, 0));
+};
+
 const typedPath = (path) => {
   const segments = path.ends.length / 2;
-  const steps = path.first.length;
+  const steps = path.moves;
   const startX = new Float32Array(segments), startZ = new Float32Array(segments);
   const endX = new Float32Array(segments), endZ = new Float32Array(segments);
   const kind = new Uint8Array(segments);
@@ -48,7 +85,7 @@ const typedPath = (path) => {
     sweep[i] !== 0 ? arcRadius(i) * Math.abs(sweep[i]) : Math.hypot(endX[i] - startX[i], endZ[i] - startZ[i]);
 
   // A grid over the path for finding what is near the pointer; long segments are in a list of their own.
-  const grid = (() => {
+  const makeGrid = () => {
     const SIDE = 96, LONG = 400;
     const space = path.view;
     const cellZ = Math.max((space[3] - space[2]) / SIDE, 1e-6), cellX = Math.max((space[1] - space[0]) / SIDE, 1e-6);
@@ -71,7 +108,10 @@ const typedPath = (path) => {
           for (let r = row(x - reach); r <= row(x + reach); r++) yield* cells.get(c * SIDE + r) ?? [];
       },
     };
-  })();
+  };
+  // Made when a pointer comes near: that takes a while for a long path.
+  let made = null;
+  const grid = { near: (...place) => (made ??= makeGrid()).near(...place) };
   const distance = (i, x, z) => {
     if (sweep[i] !== 0) {
       const r = arcRadius(i), turn = Math.sign(sweep[i]), full = 2 * Math.PI;

@@ -116,7 +116,7 @@ const timePlots = (plots, { byId, element, word, inLanguage, number, clockFace, 
   const draw = () => {
     width = host.clientWidth;
     if (width === 0) return;
-    const svg = made("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "aria-label": word("plots-help") });
+    const headings = [], svg = made("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "aria-label": word("plots-help") });
     drawShares(svg);
     drawSeconds(svg);
     values = lanes.map((lane, at) => {
@@ -131,8 +131,8 @@ const timePlots = (plots, { byId, element, word, inLanguage, number, clockFace, 
       }
       svg.append(made("path", { class: `course ${lane.look}`, d: band(lane, top) }));
       if (lane.peak !== undefined) svg.append(made("circle", { class: `peak ${lane.look}`, cx: toPx(atPeak(lane)).toFixed(1), cy: y(lane.peak).toFixed(1), r: 4 }));
-      const value = made("tspan", { class: "value" });
-      svg.append(made("text", { class: "lane", x: LEFT, y: top - 6 }, made("tspan", {}, nameOf(lane)), made("tspan", {}, " "), value));
+      const value = element("b");
+      headings.push(element("p", { class: "lane", style: `left: ${LEFT}px; top: ${top - HEADING + 2}px` }, nameOf(lane), " ", value));
       return value;
     });
     let free = 0;
@@ -143,15 +143,15 @@ const timePlots = (plots, { byId, element, word, inLanguage, number, clockFace, 
       svg.append(made("text", { class: "tool", x: (x + 3).toFixed(1), y: TOP - 22 }, `T${tool}`));
       free = x + 34;
     }
-    cursor = made("path", { class: "plot-cursor", d: `M0 ${TOP - 20}V${foot}` });
-    svg.append(cursor);
-    host.replaceChildren(svg);
+    // What changes with the time lies above the picture, which is drawn once.
+    cursor = element("div", { class: "plot-cursor", style: `top: ${TOP - 20}px; height: ${foot - TOP + 20}px` });
+    host.replaceChildren(svg, ...headings, cursor);
     show(now);
   };
   const show = (time) => {
     now = time;
     if (!cursor) return;
-    cursor.setAttribute("transform", `translate(${toPx(time).toFixed(2)} 0)`);
+    cursor.style.transform = `translateX(${toPx(time).toFixed(2)}px)`;
     // The end of a column belongs to it: what is shown is what was done last.
     const column = Math.max(0, Math.min(count - 1, Math.ceil(time / seconds - 1e-6) - 1));
     values.forEach((value, at) => { value.textContent = valueAt(lanes[at], column); });

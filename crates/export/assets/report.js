@@ -36,7 +36,7 @@
   };
 
   // ---- the path ----------------------------------------------------------------------------------------
-  const path = run.path;
+  const path = readPath(run.path);
   const {
     segments, steps, startX, startZ, endX, endZ, kind, sweep, centreX, centreZ, moveOf, box,
     segmentEnd, arcRadius, along, lengthOf, grid, distance,
@@ -71,16 +71,13 @@
   const totalTime = endTime(steps - 1);
 
   // Moves by the line that ran them and by the figure line that shaped them.
-  const movesByLine = new Map();
-  const remember = (line, move) => {
-    if (line === 0) return;
-    if (!movesByLine.has(line)) movesByLine.set(line, []);
-    movesByLine.get(line).push(move);
-  };
-  for (let move = 0; move < steps; move++) {
-    remember(path.line[move], move);
-    if (path.figure[move] !== path.line[move]) remember(path.figure[move], move);
-  }
+  const movesOfLine = indexByLine((remember) => {
+    for (let move = 0; move < steps; move++) {
+      const line = path.line[move], last = path.lastLine[move], figure = path.figure[move];
+      for (let one = line; one > 0 && one <= last; one++) remember(one, move);
+      if (figure > 0 && figure !== line) remember(figure, move);
+    }
+  });
 
   // Cycles are runs of moves; a pass is those of its number.
   const cycles = run.cycles;
@@ -106,7 +103,7 @@
   const view = { pxPerMm: 1, x: 0, z: 0 };// what lies in the middle of the plot
   let fitted = true;
   // A very long path hides the part, and costs time: it is shown when it is asked for.
-  const LONG_PATH = 20000;
+  const LONG_PATH = 20000, MOVES_AT_ONCE = 12;
   let pathShown = !model || segments <= LONG_PATH;
   let solid = null, solidShown = false;   // the part in space, made when it is asked for
 
@@ -234,14 +231,23 @@
     drawDone();
     drawMarks();
   };
-  const showSolid = () => {
+  const showSolid = (section = sectionSoon(() => showSolid(model.sectionAt(step, part)))) => {
     const tool = step < steps && segments > 0 ? model.toolOf(currentMove()) : null;
     solid.show({
-      section: model.sectionAt(step, part), fallen: model.fallenAt(step), tool, place: toolPosition(), pathShown,
+      section, fallen: model.fallenAt(step), tool, place: toolPosition(), pathShown,
       segments: step < steps ? path.first[step] : segments,
     });
   };
-  const drawStock = () => { if (model) drawing.stock(stockLayer, model.sectionAt(step, part), model.fallenAt(step)); };
+  // In a long program the moves since the last moment are cut when the hand rests.
+  let cutting = 0;
+  const sectionSoon = (show) => {
+    clearTimeout(cutting);
+    const section = model.sectionAt(step, part, MOVES_AT_ONCE);
+    if (section.isEarly) cutting = setTimeout(show, REST_MS);
+    return section;
+  };
+  const drawStock = () => { if (model) drawing.stock(stockLayer, sectionSoon(drawStockNow), model.fallenAt(step)); };
+  const drawStockNow = () => drawing.stock(stockLayer, model.sectionAt(step, part), model.fallenAt(step));
   // What is done so far, drawn on; going back starts anew.
   const DONE_AT_ONCE = 4000;
   let waiting = 0;
@@ -400,7 +406,7 @@
 
   // ---- the program -------------------------------------------------------------------------------------
   const list = byId("program"), rows = byId("rows");
-  const ROW_PX = 20, ROWS_PLAIN = 20000, ROWS_AROUND = 150;
+  const ROW_PX = 20, ROWS_PLAIN = 20000, ROWS_AROUND = 60;
   let rowsFrom = 1, rowsTo = 0;
   const foundAt = new Map();
   run.diagnostics.forEach((found) => {
@@ -424,7 +430,7 @@
       element("span", { class: "sign " + (worst ?? ""), title: worst ? found.map((f) => inLanguage(f.message)).join("\n") : undefined,
         "aria-label": worst ? word("severity-" + worst) : undefined }, worst ? SIGNS[worst] : ""),
       code);
-    if (movesByLine.has(line)) row.classList.add("moves");
+    if (movesOfLine(line).length > 0) row.classList.add("moves");
     return row;
   };
   const makeRows = (from, to) => {
@@ -441,8 +447,8 @@
     const all = run.program.length;
     if (all <= ROWS_PLAIN) { if (again) makeRows(1, all); return; }
     const top = Math.floor(list.scrollTop / ROW_PX), seen = Math.ceil(list.clientHeight / ROW_PX);
-    if (!again && top >= rowsFrom + 50 - 1 && top + seen <= rowsTo - 50) return;
-    if (!again && ((rowsFrom === 1 && top < 50) || (rowsTo === all && top + seen > all - 50))) {
+    if (!again && top >= rowsFrom + 20 - 1 && top + seen <= rowsTo - 20) return;
+    if (!again && ((rowsFrom === 1 && top < 20) || (rowsTo === all && top + seen > all - 20))) {
       if (top + 1 >= rowsFrom && top + seen <= rowsTo) return;
     }
     makeRows(Math.max(1, top - ROWS_AROUND), Math.min(all, top + seen + ROWS_AROUND));
@@ -483,7 +489,8 @@
     const end = segmentEnd(move) - 1, parts = [];
     const line = path.line[move], figure = path.figure[move];
     parts.push(`X⌀ ${number(2 * endX[end], 3)}  Z ${number(endZ[end], 3)}`);
-    parts.push(line > 0 ? word("line", { n: line }) : word("other-program"));
+    const last = path.lastLine[move];
+    parts.push(line === 0 ? word("other-program") : last > line ? word("lines-of", { a: line, b: last }) : word("line", { n: line }));
     if (figure > 0 && figure !== line) parts.push(word("figure-line", { n: figure }));
     if (path.cycle[move] > 0) parts.push(path.cycles[path.cycle[move] - 1]);
     if (path.pass[move] > 0) parts.push(word("pass", { n: path.pass[move] }));
@@ -533,7 +540,7 @@
   };
   function movesOfSelection() {
     const all = [];
-    for (let line = selectedFrom; line > 0 && line <= selectedTo; line++) all.push(...(movesByLine.get(line) ?? []));
+    for (let line = selectedFrom; line > 0 && line <= selectedTo; line++) for (const move of movesOfLine(line)) all.push(move);
     return all;
   }
   const select = (from, to = from, move = -1, pass = null) => {
@@ -557,16 +564,19 @@
     step = Math.max(0, Math.min(steps, to));
     part = step < steps ? partDone : 0;
     if (part === 0 && waited > 0 && step !== before) waited = 0;
+    const isOther = before !== step || current !== currentMove();
+    if (isOther) {
+      pickedMove = -1;
+      pickedPass = null;
+      linesLast = false;
+    }
     // The whole path is drawn strongly when all is done, faintly else.
     if (solidShown) showSolid();
     else if ((before === steps) !== (step === steps)) drawPath();
     else { drawStock(); drawDone(); drawMarks(); }
-    if (before === step && current === currentMove()) showTime();
+    if (!isOther) showTime();
     else {
-      pickedMove = -1;
-      pickedPass = null;
       markPass();
-      linesLast = false;
       // While it plays fast, the list is not moved at every frame.
       if (isOnTheWay() && !(playing && performance.now() - scrolledAt < 200)) {
         scrollTo(path.line[currentMove()]);
@@ -574,7 +584,6 @@
       }
       markRows();
       readout();
-      if (step < steps && !solidShown) drawMarks();
     }
   };
   const clearSelection = () => { select(0); };
@@ -647,6 +656,7 @@
       one.setAttribute("aria-label", word(one.dataset.label));
       if (one.tagName === "BUTTON" || one.tagName === "SELECT") one.title = word(one.dataset.label);
     });
+    byId("joined").textContent = word("path-joined", { mm: byId("joined").dataset.mm });
     labelPlay();
     makeTables();
     makeCycles();
@@ -813,6 +823,10 @@
   window.addEventListener("afterprint", () => { document.documentElement.classList.remove("printing"); recolour(); });
 
   // ---- begin -------------------------------------------------------------------------------------------
+  if (path.joined_mm > 0) {
+    byId("joined").hidden = false;
+    byId("joined").dataset.mm = path.joined_mm;
+  }
   byId("incomplete").hidden = !path.incomplete;
   readColours();
   setLanguage(language);

@@ -19,8 +19,8 @@ use crate::finding::{Finding, decode};
 use crate::passes::setting_name;
 use crate::speech::{BOTH, Speech};
 
-/// Lines of the program in the report.
-const REPORT_LINES_MAX: usize = 100_000;
+/// Lines of the program in the report; a browser's list cannot be much higher.
+const REPORT_LINES_MAX: usize = 600_000;
 
 /// Bytes of the program in the report.
 const REPORT_BYTES_MAX: usize = 16 * 1024 * 1024;

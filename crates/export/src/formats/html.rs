@@ -5,24 +5,22 @@
 //! JSON, so that no text of a program ever becomes markup. Deliberately not here: choosing words.
 
 mod part;
+mod path;
 mod plots;
 
 use serde_json::{Value, json};
-use turnwright_canon::Phase;
 use turnwright_diagnostics::Severity;
-use turnwright_units::write_fixed;
 
 pub use self::part::{PlaceMark, ReportPart};
+pub use self::path::REPORT_SEGMENTS_MAX;
+use self::path::{Kept, path_json};
 use super::cutting_svg::CuttingPicture;
-use super::svg::{escape_xml, shown_extents};
+use super::svg::escape_xml;
 use crate::Language;
 use crate::passes::{Cause, Cycle, GivenWord, Pass};
-use crate::path::{Advance, Move, PathRecorder, Segment, SegmentKind};
+use crate::path::PathRecorder;
 use crate::timeline::Timeline;
 use crate::words::{REPORT_TEXTS, Words};
-
-/// Segments in one report; about 20 MB of HTML. The report says when there are more.
-pub const REPORT_SEGMENTS_MAX: usize = 300_000;
 
 const TEMPLATE: &str = include_str!("../../assets/report.html");
 const STYLE: &str = include_str!("../../assets/report.css");
@@ -218,7 +216,7 @@ fn inert_json(json: &str) -> String {
 }
 
 fn run_json(path: &PathRecorder, report: &Report<'_>) -> String {
-    let kept = kept(path);
+    let kept = Kept::of(path, REPORT_SEGMENTS_MAX);
     let both = |en: &str, zh: &str| json!({ "en": en, "zh": zh });
     let operations: Vec<Value> = report
         .operations
@@ -241,12 +239,12 @@ fn run_json(path: &PathRecorder, report: &Report<'_>) -> String {
                 "from": utf16_column(text, found.column), "to": utf16_column(text, found.end_column),
                 "message": both(&found.message_en, &found.message_zh), "cause": both(&found.cause_en, &found.cause_zh),
                 "remedy": both(&found.remedy_en, &found.remedy_zh),
-                "mark": found.mark.map(|mark| mark.json(kept.moves)),
+                "mark": found.mark.map(|mark| mark.json(&kept.moves)),
             })
         })
         .collect();
     let cycles: Vec<Value> =
-        report.cycles.iter().map(|table| cycle_json(table, path, report.source)).collect();
+        report.cycles.iter().map(|table| cycle_json(table, &kept, report.source)).collect();
     let facts: Vec<Value> = report
         .facts
         .iter()
@@ -268,7 +266,7 @@ fn run_json(path: &PathRecorder, report: &Report<'_>) -> String {
     json.push_str(&path_json(path, &kept, report.source));
     if let Some(part) = &report.part {
         json.push_str(",\n\"part\":");
-        json.push_str(&part.json(kept.moves));
+        json.push_str(&part.json(&kept.moves));
     }
     if let Some(plots) =
         report.timeline.and_then(|timeline| plots::plots_json(timeline, report.cutting.as_ref()))
@@ -281,10 +279,9 @@ fn run_json(path: &PathRecorder, report: &Report<'_>) -> String {
 }
 
 /// A cycle: its moves are those with indices from `first` up to `end`.
-fn cycle_json(table: &CycleTable, path: &PathRecorder, source: u32) -> Value {
+fn cycle_json(table: &CycleTable, kept: &Kept<'_>, source: u32) -> Value {
     let cycle = &table.cycle;
-    let moves = path.moves();
-    let index = |command| moves.partition_point(|one| one.command < command);
+    let index = |command| kept.moves.partition_point(|one| one.command < command);
     let here = cycle.source == source;
     let settings: Vec<Value> = cycle
         .settings
@@ -342,189 +339,11 @@ fn utf16_column(text: &str, column: u32) -> usize {
     text.char_indices().take_while(|(at, _)| *at < byte).map(|(_, c)| c.len_utf16()).sum()
 }
 
-/// Columns of numbers, as JSON arrays.
-#[derive(Default)]
-struct Column(Vec<u8>);
-
-impl Column {
-    fn push(&mut self, value: i64, decimals: u8) {
-        if !self.0.is_empty() {
-            self.0.push(b',');
-        }
-        write_fixed(&mut self.0, value, decimals);
-    }
-
-    fn push_whole(&mut self, value: impl Into<i64>) {
-        self.push(value.into(), 0);
-    }
-
-    /// A length in millimetres with four places, a tenth of the finest increment in use.
-    fn push_mm(&mut self, value: f32) {
-        self.push((f64::from(value) * 1e4).round() as i64, 4);
-    }
-
-    /// A length in millimetres to the nanometre.
-    fn push_nm(&mut self, mm: f64) {
-        self.push((mm * 1e6).round() as i64, 6);
-    }
-
-    /// Adds it to an object that is being written.
-    fn write(&self, name: &str, out: &mut String) {
-        out.push_str(",\n\"");
-        out.push_str(name);
-        out.push_str("\":[");
-        out.push_str(std::str::from_utf8(&self.0).unwrap_or_default());
-        out.push(']');
-    }
-}
-
-/// What of a path is in the report: all of it, or whole moves up to the limit.
-struct Kept<'a> {
-    moves: &'a [Move],
-    segments: &'a [Segment],
-    incomplete: bool,
-}
-
-fn kept(path: &PathRecorder) -> Kept<'_> {
-    let segments = path.segments();
-    let moves_kept = path.moves().partition_point(|one| (one.segment_first as usize) < REPORT_SEGMENTS_MAX);
-    // A move at the limit with a corner would lose its second half.
-    let incomplete = segments.len() > REPORT_SEGMENTS_MAX || path.segments_dropped() > 0;
-    let moves_kept = if segments.len() > REPORT_SEGMENTS_MAX { moves_kept - 1 } else { moves_kept };
-    let segments_kept =
-        path.moves().get(moves_kept).map_or(segments.len(), |next| next.segment_first as usize);
-    Kept { moves: &path.moves()[..moves_kept], segments: &segments[..segments_kept], incomplete }
-}
-
-/// The path as columns; the script's first page says what each is. Zero means "none" in the columns that
-/// count from 1.
-fn path_json(path: &PathRecorder, kept: &Kept<'_>, source: u32) -> String {
-    let Kept { moves, segments, incomplete } = *kept;
-    let [mut ends, mut jumps, mut arcs] = [const { Column(Vec::new()) }; 3];
-    let mut pen = None;
-    for (index, segment) in segments.iter().enumerate() {
-        if pen != Some(segment.start) {
-            jumps.push_whole(index as i64);
-            jumps.push_mm(segment.start.radius_mm);
-            jumps.push_mm(segment.start.z_mm);
-        }
-        ends.push_mm(segment.end.radius_mm);
-        ends.push_mm(segment.end.z_mm);
-        if let Some(bow) = segment.bow {
-            arcs.push_whole(index as i64);
-            arcs.push_mm(bow.centre.radius_mm);
-            arcs.push_mm(bow.centre.z_mm);
-            arcs.push((f64::from(bow.sweep_rad) * 1e7).round() as i64, 7);
-        }
-        pen = Some(segment.end);
-    }
-
-    let mut labels = Vec::new();
-    let [mut first, mut kind, mut line, mut figure, mut cycle, mut pass] = [const { Column(Vec::new()) }; 6];
-    let [mut phase, mut tool, mut advance, mut unit, mut elapsed] = [const { Column(Vec::new()) }; 5];
-    let (mut waits, mut before_s) = (Column::default(), 0.0);
-    for (index, one) in moves.iter().enumerate() {
-        // Dwells, tool changes and whatever else passes before the tool moves.
-        let wait_ms = ((one.elapsed_s - f64::from(one.seconds) - before_s) * 1e3).round() as i64;
-        if wait_ms > 0 {
-            waits.push_whole(index as i64);
-            waits.push(wait_ms, 3);
-        }
-        before_s = one.elapsed_s;
-        let here = one.source == source;
-        first.push_whole(one.segment_first);
-        kind.push_whole(kind_number(segments[one.segment_first as usize].kind));
-        line.push_whole(if here { one.line } else { 0 });
-        figure.push_whole(one.figure_line.filter(|_| here).map_or(0, |line| line.get()));
-        cycle.push_whole(one.cycle.map_or(0, |cycle| {
-            let at = labels.iter().position(|label| *label == cycle.label).unwrap_or_else(|| {
-                labels.push(cycle.label);
-                labels.len() - 1
-            });
-            at as i64 + 1
-        }));
-        pass.push_whole(one.cycle.map_or(0, |cycle| cycle.pass));
-        phase.push_whole(one.cycle.map_or(0, |cycle| phase_number(cycle.phase)));
-        tool.push_whole(one.tool);
-        let (value, number) = match one.advance {
-            None => (0.0, 0),
-            Some(Advance::MmPerRevolution(value)) => (value, 1),
-            Some(Advance::MmPerMinute(value)) => (value, 2),
-            Some(Advance::LeadMm(value)) => (value, 3),
-        };
-        advance.push((f64::from(value) * 1e5).round() as i64, 5);
-        unit.push_whole(number);
-        elapsed.push((one.elapsed_s * 1e3).round() as i64, 3);
-    }
-
-    let shown = shown_extents(path, 2.0);
-    let view = [shown.radius_min_mm, shown.radius_max_mm, shown.z_min_mm, shown.z_max_mm];
-    let words: Vec<&str> = PHASES.iter().map(|phase| phase.word()).collect();
-    let labels: Vec<String> = labels.iter().map(ToString::to_string).collect();
-    let mut out = format!(
-        "{{\"view\":{},\"incomplete\":{incomplete},\"phases\":{},\"cycles\":{}",
-        json!(view),
-        json!(words),
-        json!(labels)
-    );
-    for (name, column) in [
-        ("ends", ends),
-        ("jumps", jumps),
-        ("arcs", arcs),
-        ("first", first),
-        ("kind", kind),
-        ("line", line),
-        ("figure", figure),
-        ("cycle", cycle),
-        ("pass", pass),
-        ("phase", phase),
-        ("tool", tool),
-        ("advance", advance),
-        ("unit", unit),
-        ("elapsed", elapsed),
-        ("waits", waits),
-    ] {
-        column.write(name, &mut out);
-    }
-    out.push('}');
-    out
-}
-
-const fn kind_number(kind: SegmentKind) -> u32 {
-    match kind {
-        SegmentKind::Rapid => 0,
-        SegmentKind::Feed => 1,
-        SegmentKind::Thread => 2,
-    }
-}
-
-/// The phases in the order of their numbers, from 1.
-const PHASES: [Phase; 15] = [
-    Phase::Approach,
-    Phase::Infeed,
-    Phase::Cut,
-    Phase::Escape,
-    Phase::Return,
-    Phase::Contour,
-    Phase::Finish,
-    Phase::Peck,
-    Phase::Back,
-    Phase::Relief,
-    Phase::Shift,
-    Phase::Thread,
-    Phase::Chamfer,
-    Phase::Out,
-    Phase::Home,
-];
-
-fn phase_number(phase: Phase) -> u32 {
-    PHASES.iter().position(|one| *one == phase).map_or(0, |at| at as u32 + 1)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::path::PHASES;
     use super::*;
-    use turnwright_canon::{Action, Command, CycleLabel, CycleOrigin, Origin, RapidPath};
+    use turnwright_canon::{Action, Command, CycleLabel, CycleOrigin, Origin, Phase, RapidPath};
     use turnwright_units::{Length, Position, Radius, WorkTip};
 
     fn at(diameter_mm: i64, z_mm: i32) -> Position<WorkTip> {
@@ -655,22 +474,31 @@ mod tests {
         assert_eq!((&run["diagnostics"][0]["from"], &run["diagnostics"][0]["to"]), (&json!(6), &json!(9)));
     }
 
+    /// A column of runs, as the script reads it.
+    fn read_runs(column: &Value) -> Vec<f64> {
+        let numbers: Vec<f64> =
+            column.as_array().expect("a column").iter().filter_map(Value::as_f64).collect();
+        numbers.chunks(2).flat_map(|run| std::iter::repeat_n(run[1], run[0] as usize)).collect()
+    }
+
     #[test]
     fn the_path_is_there_in_columns_of_equal_height() {
         let run = run_of(&write_html(&recorded(5), &Report::default()));
         let path = &run["path"];
-        let height = |name: &str| path[name].as_array().expect("a column").len();
-        for name in ["kind", "line", "figure", "cycle", "pass", "phase", "tool", "advance", "unit", "elapsed"]
-        {
-            assert_eq!(height(name), height("first"), "{name}");
+        for name in ["first", "kind", "line", "figure", "cycle", "pass", "phase", "tool", "advance", "unit"] {
+            assert_eq!(read_runs(&path[name]).len(), 5, "{name}");
         }
-        assert_eq!(height("first"), 5);
+        assert_eq!((&path["moves"], path["elapsed"].as_array().map(Vec::len)), (&json!(5), Some(5)));
         assert_eq!(path["cycles"], json!(["G71.1"]));
-        assert_eq!(path["phases"][path["phase"][0].as_u64().expect("a number") as usize - 1], "home");
-        assert_eq!((&path["figure"][0], &path["pass"][0]), (&json!(2), &json!(3)));
+        assert_eq!(path["phases"][read_runs(&path["phase"])[0] as usize - 1], "home");
+        assert_eq!((read_runs(&path["figure"])[0], read_runs(&path["pass"])[0]), (2.0, 3.0));
         assert_eq!(path["jumps"], json!([0, 50, 100]));
-        assert_eq!(path["elapsed"][4], 2.5);
-        assert_eq!(path["incomplete"], false);
+        assert_eq!(path["elapsed"], json!([500, 500, 500, 500, 500]));
+        // The first move goes from X100 Z100 to X40 Z0, round a corner; the second ends at X41 Z-1.
+        let ends: Vec<f64> =
+            path["ends"].as_array().expect("ends").iter().filter_map(Value::as_f64).collect();
+        assert_eq!((ends[0] + ends[2], ends[1] + ends[3]), (200_000.0, 0.0));
+        assert_eq!((path["incomplete"].as_bool(), path["joined_mm"].as_f64()), (Some(false), Some(0.0)));
     }
 
     #[test]
@@ -685,23 +513,14 @@ mod tests {
         );
         let run = run_of(&write_html(&path, &Report::default()));
         assert_eq!(run["path"]["waits"], json!([1, 2]));
-        assert_eq!(run["path"]["elapsed"], json!([0.5, 2.75]));
+        assert_eq!(run["path"]["elapsed"], json!([500, 2250]));
     }
 
     #[test]
     fn lines_of_another_text_are_not_lines_of_this_one() {
         let report = Report { source: 1, ..Report::default() };
         let run = run_of(&write_html(&recorded(1), &report));
-        assert_eq!((&run["path"]["line"][0], &run["path"]["figure"][0]), (&json!(0), &json!(0)));
-    }
-
-    #[test]
-    fn a_path_that_is_too_long_is_cut_between_moves_and_says_so() {
-        let run = run_of(&write_html(&recorded(REPORT_SEGMENTS_MAX as u32), &Report::default()));
-        let path = &run["path"];
-        assert_eq!(path["incomplete"], true);
-        let segments = path["ends"].as_array().expect("ends").len() / 2;
-        assert!(segments <= REPORT_SEGMENTS_MAX && segments > REPORT_SEGMENTS_MAX - 3, "{segments}");
+        assert_eq!((&run["path"]["line"], &run["path"]["figure"]), (&json!([1, 0]), &json!([1, 0])));
     }
 
     #[test]

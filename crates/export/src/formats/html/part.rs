@@ -11,7 +11,7 @@ use turnwright_stock::History;
 use turnwright_stock::history::{Edge, Slice};
 use turnwright_stock::machining::{Obstacle, ToolShape};
 
-use super::Column;
+use super::path::Column;
 use crate::formats::part_svg::{PartDrawing, thread_text, write_part_svg};
 use crate::part::PartShape;
 use crate::path::Move;
