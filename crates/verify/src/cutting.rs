@@ -240,16 +240,6 @@ impl CuttingRun {
             return None;
         }
         let ahead = Vector { x: way.x / length, z: way.z / length };
-        // The share of the way on which something was removed.
-        let (low, high, start, end) = if way.z.abs() >= way.x.abs() {
-            (bounds.min.z, bounds.max.z, from.z, to.z)
-        } else {
-            (bounds.min.x, bounds.max.x, from.x, to.x)
-        };
-        let overlap = high.min(start.max(end)) - low.max(start.min(end));
-        let share = (overlap / (end - start).abs()).clamp(0.0, 1.0);
-        // A blade that only just dips in has removed more than it has moved.
-        let share = if share > 0.0 { share } else { 1.0 };
         let square = Square::new(ahead);
         let line = square.of(from);
         let corners = [
@@ -263,8 +253,21 @@ impl CuttingRun {
             offs.iter().copied().fold(f64::INFINITY, f64::min),
             offs.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         );
+        // The share of the way on which something was removed.
+        let (low, high, start, end) = if way.z.abs() >= way.x.abs() {
+            (bounds.min.z, bounds.max.z, from.z, to.z)
+        } else {
+            (bounds.min.x, bounds.max.x, from.x, to.x)
+        };
+        let overlap = high.min(start.max(end)) - low.max(start.min(end));
+        let share = (overlap / (end - start).abs()).clamp(0.0, 1.0);
+        // A round nose takes what lies beside a short way: on no less of it than the width of what was taken asks for.
+        // A blade that only just dips in has removed more than it has moved.
+        let least_share = (removed.area_mm2 / ((most - least) * length)).min(1.0);
+        let share = if share > 0.0 { share.max(least_share) } else { 1.0 };
         let is_upright = way.x.abs() < 1e-9 || way.z.abs() < 1e-9;
-        let depth = if is_upright { most - least } else { removed.area_mm2 / (length * share) };
+        let depth = removed.area_mm2 / (length * share);
+        let depth = if is_upright { most - least } else { depth.min(most - least) };
         if depth < CUT_MM {
             return None;
         }

@@ -101,6 +101,30 @@ fn a_nose_leaves_its_scallops() {
 }
 
 #[test]
+fn a_contour_of_short_ways_cuts_no_deeper_than_it_is_deep() {
+    // A wave, a move every 0.02 mm, cut with a nose of 0.8 mm: what one move takes lies beside it, where the nose
+    // touches. A flat wave leaves no more than 2.2 mm to be cut; of a steep one an edge takes slivers, no longer
+    // than itself. At 0.2 mm a turn, 640 turns of a bar of 50 mm, 2.2 mm are no more than 45 cm³ a minute.
+    // The wrong hand cuts with its back all the way.
+    for (hand, wave_mm, depth_mm, removal_cm3_per_min) in [("R", 0.4, 2.5, 50.0), ("L", 2.0, 15.0, 400.0)] {
+        let tool = format!(
+            "{STOCK}[tools.1]\nkind = \"turning\"\ninsert = \"DNMG150608\"\nholder = \"PDJN{hand}2525M15\"\n"
+        );
+        let mut text = String::from("O1\nT0101\nG97 S640 M03\nG00 X48. Z2.\nG01 Z0. F0.2\n");
+        for step in 1..1_500 {
+            let angle = f64::from(step) * 0.04;
+            text += &format!("X{:.3} Z-{:.3}\n", 46.0 + wave_mm * angle.cos(), f64::from(step) * 0.02);
+        }
+        text += "G00 X100.\nM30\n";
+        let cut = data(&text, &tool);
+        let (depth, place) = cut.peak(Quantity::Depth).expect("a depth");
+        assert!(depth < depth_mm, "{depth} mm deep in line {}", place.line);
+        let (removal, place) = cut.peak(Quantity::Removal).expect("a rate");
+        assert!(removal < removal_cm3_per_min, "{removal} cm³/min in line {}", place.line);
+    }
+}
+
+#[test]
 fn a_blade_cuts_its_width_and_a_drill_has_two_lips() {
     let text = "O1\nT0101\nG97 S500 M03\nG00 X52. Z-20.\nG01 X40. F0.1\nG00 X60.\nM30\n";
     let blade = data(text, &format!("{STOCK}[tools.1]\nkind = \"grooving\"\nwidth_mm = 4\nreach_mm = 10\n"));
