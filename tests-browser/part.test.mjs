@@ -197,11 +197,11 @@ test("a crash is marked in the picture, and its mark leads to the finding", asyn
   assert.ok(before > 200, "marks are drawn at the end too");
   await finding.locator(".link", { hasText: "show the place" }).click();
   assert.equal(await page.evaluate(() => turnwright.currentLine), 20);
-  const marks = await page.evaluate(() => turnwright.marks());
-  const mark = marks.find((one) => one.finding === 0) ?? marks[0];
+  const index = await page.locator("#diagnostics .found")
+    .evaluateAll((all) => all.findIndex((one) => one.textContent.includes("T350")));
   await page.keyboard.press("End");
   await page.evaluate(() => scrollTo(0, 0));
-  const { x, y } = (await page.evaluate(() => turnwright.marks())).find((one) => one.finding === mark.finding);
+  const { x, y } = (await page.evaluate(() => turnwright.marks())).find((one) => one.finding === index);
   await page.mouse.move(x, y);
   assert.match(await page.textContent("#hover"), /T350/);
   await page.mouse.click(x, y);
