@@ -1,6 +1,6 @@
 //! Commands and options.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -247,7 +247,7 @@ pub(crate) struct PartOptions {
     pub(crate) machine: Machine,
 }
 
-/// Writes where the axes are at every tick, with acceleration and jerk, as a table (CSV).
+/// Writes where the axes are at every tick, with acceleration and jerk, as a table (CSV or Parquet).
 ///
 /// Lengths are millimetres, X is a diameter, places are those of the tool tip in work coordinates. In polar and
 /// cylindrical interpolation X and V are those of the virtual plane.
@@ -259,8 +259,8 @@ pub(crate) struct Motion {
     /// Ticks a second
     #[arg(long, value_name = "HZ", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) rate: u32,
-    /// The table; - for standard output
-    #[arg(short, long, value_name = "OUT.csv", value_hint = clap::ValueHint::FilePath)]
+    /// The table; - for standard output, as CSV
+    #[arg(short, long, value_name = "OUT.csv|OUT.parquet", value_parser = samples_name)]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) machine: Machine,
@@ -503,6 +503,19 @@ fn named(text: &str, ends: &[&str]) -> Option<PathBuf> {
     let path = PathBuf::from(text);
     let is_known = |end: &&str| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(end));
     ends.iter().any(is_known).then_some(path)
+}
+
+/// The forms of a table of samples.
+pub(crate) const PARQUET: &str = "parquet";
+
+fn samples_name(text: &str) -> Result<PathBuf, String> {
+    let path = if text == "-" { Some(PathBuf::from(text)) } else { named(text, &["csv", PARQUET]) };
+    path.ok_or("expected -, or a name that ends in .csv or .parquet".to_string())
+}
+
+/// Whether a table is written for data programs.
+pub(crate) fn is_parquet(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(PARQUET))
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

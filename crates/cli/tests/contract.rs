@@ -267,6 +267,15 @@ fn motion_is_a_table_that_ends_where_the_program_does() {
     assert_eq!((ran.status, ran.out.as_str()), (0, ""));
     assert_eq!(std::fs::read_to_string(&table).expect("the table").lines().count(), rows.len() + 1);
     assert_eq!(turnwright(&["motion", &program, "--rate", "0"]).status, 2);
+    // For data programs; its cells are compared with these in tests-browser/samples.test.mjs.
+    let table = folder.path("samples.parquet");
+    let ran = turnwright(&["motion", &program, "--rate", "200", "-o", &table.display().to_string()]);
+    assert_eq!((ran.status, ran.out.as_str()), (0, ""));
+    let bytes = std::fs::read(&table).expect("the table");
+    assert!(bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"));
+    let ran = turnwright(&["motion", &program, "-o", &folder.path("samples.xls").display().to_string()]);
+    assert_eq!(ran.status, 2);
+    assert!(ran.err.contains(".csv or .parquet"), "{}", ran.err);
 }
 
 /// Seconds with nine decimals as whole nanoseconds.

@@ -6,6 +6,7 @@ pub mod glb;
 pub mod html;
 pub mod jsonl;
 pub mod overlay_svg;
+pub mod parquet;
 pub mod part_svg;
 #[cfg(feature = "png")]
 pub mod png;

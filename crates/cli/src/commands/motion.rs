@@ -1,16 +1,18 @@
 //! `turnwright motion`: where the axes are, tick by tick.
 //!
-//! In: one program and a rate. Out: a table (CSV) with a line a tick, written as the plan becomes final: its length
-//! needs no memory. The program runs as with nobody at the panel.
+//! In: one program and a rate. Out: a table with a row a tick, CSV or Parquet by the end of the file's name, written as
+//! the plan becomes final: its length needs no memory. The program runs as with nobody at the panel.
 
 use std::io::{self, Write};
 
 use turnwright_canon::{Action, Interpolation};
-use turnwright_motion::{Player, Sample};
+use turnwright_control::MachineAxes;
+use turnwright_export::formats::parquet::{Column, ColumnKind, ParquetTable};
+use turnwright_motion::{Kind, Player, Sample};
 use turnwright_units::write_fixed;
 
 use super::trace::BUFFER_BYTES;
-use crate::arguments::Motion;
+use crate::arguments::{Motion, is_parquet};
 use crate::environment::ProgramText;
 use crate::execution::Execution;
 use crate::fault::{Fault, Status};
@@ -33,15 +35,9 @@ pub(crate) fn run(options: &Motion, printer: &Printer) -> Result<Status, Fault> 
         Some(path) if path.as_os_str() != "-" => Target::File(WholeFile::create(path, speech)?),
         _ => Target::Standard(io::stdout().lock()),
     };
-    let axes = &machine.axes;
-    let mut table = Table {
-        has_others: axes.c.is_some() || axes.y.is_some() || axes.b.is_some(),
-        is_virtual: false,
-        buffer: Vec::with_capacity(BUFFER_BYTES + 4096),
-    };
-    table.head();
+    let mut table = Table::new(&machine.axes, options.output.as_deref().is_some_and(is_parquet));
     while let Some(command) = execution.next_command() {
-        player.push(&command, &mut |sample| table.line(sample));
+        player.push(&command, &mut |sample| table.add(sample));
         if let Action::Interpolation(interpolation) = &command.action {
             table.is_virtual = *interpolation != Interpolation::Normal;
         }
@@ -49,7 +45,8 @@ pub(crate) fn run(options: &Motion, printer: &Printer) -> Result<Status, Fault> 
             target.write(&mut table.buffer)?;
         }
     }
-    player.finish(&mut |sample| table.line(sample));
+    player.finish(&mut |sample| table.add(sample));
+    table.finish();
     target.write(&mut table.buffer)?;
     target.finish()?;
     let findings = execution.findings();
@@ -82,53 +79,114 @@ impl Target {
     }
 }
 
-/// The lines.
+/// The rows.
 struct Table {
     /// The machine has axes beyond X and Z.
     has_others: bool,
     /// X and V are of a virtual plane: where the rotary axis is follows from them.
     is_virtual: bool,
     buffer: Vec<u8>,
+    form: Form,
 }
 
+/// How they are written.
+enum Form {
+    Csv,
+    Parquet(Box<ParquetTable>),
+}
+
+/// The words of the column `kind`, in the order of [`Kind`].
+const KIND_WORDS: [&str; Kind::ALL.len()] = {
+    let mut words = [""; Kind::ALL.len()];
+    let mut at = 0;
+    while at < words.len() {
+        words[Kind::ALL[at] as usize] = Kind::ALL[at].word();
+        at += 1;
+    }
+    words
+};
+
 impl Table {
-    fn head(&mut self) {
-        let others = if self.has_others { ",y_mm,c_deg,b_deg,v_mm" } else { "" };
-        let head = format!("time_s,x_mm,z_mm{others},path_mm_per_s,rpm,turns,kind,line\n");
-        self.buffer.extend_from_slice(head.as_bytes());
+    fn new(axes: &MachineAxes, is_parquet: bool) -> Self {
+        let has_others = axes.c.is_some() || axes.y.is_some() || axes.b.is_some();
+        let mut buffer = Vec::with_capacity(BUFFER_BYTES + 4096);
+        let columns = columns(has_others);
+        let form = if is_parquet {
+            Form::Parquet(Box::new(ParquetTable::new(&columns, &mut buffer)))
+        } else {
+            let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
+            buffer.extend_from_slice(names.join(",").as_bytes());
+            buffer.push(b'\n');
+            Form::Csv
+        };
+        Self { has_others, is_virtual: false, buffer, form }
     }
 
-    fn line(&mut self, sample: &Sample) {
+    fn add(&mut self, sample: &Sample) {
         let [x, z, y, c, b, v] = sample.place;
         self.number(sample.time_s, 6);
         // X is a diameter, as everywhere.
-        self.column(2.0 * x, 6);
-        self.column(z, 6);
+        self.number(2.0 * x, 6);
+        self.number(z, 6);
         if self.has_others {
-            self.column(y, 6);
-            if self.is_virtual {
-                self.buffer.push(b',');
-            } else {
-                self.column(c, 6);
-            }
-            self.column(b, 6);
-            self.column(v, 6);
+            self.number(y, 6);
+            self.cell((!self.is_virtual).then_some(c), 6);
+            self.number(b, 6);
+            self.number(v, 6);
         }
-        self.column(sample.path_mm_per_s, 4);
-        self.column(sample.rpm, 2);
-        self.column(sample.turns, 6);
-        let kind = sample.kind.word();
-        // Writing to memory does not fail.
-        let _ = writeln!(self.buffer, ",{kind},{}", sample.line);
-    }
-
-    fn column(&mut self, value: f64, decimals: u8) {
-        self.buffer.push(b',');
-        self.number(value, decimals);
+        self.number(sample.path_mm_per_s, 4);
+        self.number(sample.rpm, 2);
+        self.number(sample.turns, 6);
+        match &mut self.form {
+            Form::Csv => {
+                // Writing to memory does not fail.
+                let _ = writeln!(self.buffer, "{},{}", sample.kind.word(), sample.line);
+            }
+            Form::Parquet(table) => {
+                table.word(sample.kind as u32);
+                table.integer(sample.line.try_into().unwrap_or(i32::MAX));
+                table.flush_full(&mut self.buffer);
+            }
+        }
     }
 
     fn number(&mut self, value: f64, decimals: u8) {
-        let scale = 10f64.powi(i32::from(decimals));
-        write_fixed(&mut self.buffer, (value * scale).round() as i64, decimals);
+        self.cell(Some(value), decimals);
     }
+
+    /// Both forms hold the same numbers: those with so many decimals.
+    fn cell(&mut self, value: Option<f64>, decimals: u8) {
+        let scale = 10f64.powi(i32::from(decimals));
+        let rounded = value.map(|value| (value * scale).round());
+        match &mut self.form {
+            Form::Csv => {
+                if let Some(rounded) = rounded {
+                    write_fixed(&mut self.buffer, rounded as i64, decimals);
+                }
+                self.buffer.push(b',');
+            }
+            // Zero has no sign, as in text.
+            Form::Parquet(table) => table.number(rounded.map(|rounded| rounded / scale + 0.0)),
+        }
+    }
+
+    /// No more rows come.
+    fn finish(&mut self) {
+        if let Form::Parquet(table) = std::mem::replace(&mut self.form, Form::Csv) {
+            table.finish(&mut self.buffer);
+        }
+    }
+}
+
+fn columns(has_others: bool) -> Vec<Column> {
+    let number = |name| Column { name, kind: ColumnKind::Number };
+    let mut columns = vec![number("time_s"), number("x_mm"), number("z_mm")];
+    if has_others {
+        let c = Column { name: "c_deg", kind: ColumnKind::OptionalNumber };
+        columns.extend([number("y_mm"), c, number("b_deg"), number("v_mm")]);
+    }
+    columns.extend(["path_mm_per_s", "rpm", "turns"].map(number));
+    columns.push(Column { name: "kind", kind: ColumnKind::Word(&KIND_WORDS) });
+    columns.push(Column { name: "line", kind: ColumnKind::Integer });
+    columns
 }
