@@ -47,6 +47,8 @@ pub(crate) enum Kept {
         computed: Places,
         /// What the block comes to where nothing looks at it.
         plain: Option<Plain>,
+        /// It may go the [short way](crate::short).
+        is_short: bool,
     },
     /// Nothing to execute.
     Blank,
@@ -237,7 +239,26 @@ impl Cache {
     /// Fills a block with the words of a kept one.
     #[inline]
     pub(crate) fn refill(&self, block: &mut Block, first: u32, count: u8) {
-        block.refill(first, &self.words[first as usize..first as usize + usize::from(count)]);
+        block.refill(first, self.words(first, count));
+    }
+
+    /// The words of a kept block.
+    #[inline]
+    pub(crate) fn words(&self, first: u32, count: u8) -> &[Word] {
+        &self.words[first as usize..first as usize + usize::from(count)]
+    }
+
+    /// Whether the way from a block to the one behind it was gone before.
+    #[inline]
+    pub(crate) fn leads_on(&self, id: BlockId) -> bool {
+        self.quick[id.place()].1.next.is_some()
+    }
+
+    /// A block needs the long way.
+    pub(crate) fn leave_short_way(&mut self, id: BlockId) {
+        if let Kept::Words { is_short, .. } = &mut self.entries[id.place()].kept {
+            *is_short = false;
+        }
     }
 
     /// The compiled value of a word of a kept block.
@@ -252,6 +273,7 @@ impl Cache {
         block: &Block,
         codes: &[Code],
         plain: Option<Plain>,
+        is_short: bool,
         frame: Frame<'_>,
     ) -> Option<BlockId> {
         let first = self.words.len() as u32;
@@ -263,7 +285,7 @@ impl Cache {
         self.words.extend_from_slice(&block.words);
         self.codes.extend_from_slice(codes);
         self.codes.resize(self.words.len(), Code::NONE);
-        self.keep(Kept::Words { first, count, computed, plain }, Quick::Not, frame)
+        self.keep(Kept::Words { first, count, computed, plain, is_short }, Quick::Not, frame)
     }
 
     /// Keeps a statement, or a block with nothing to execute; `None` when there is no room.

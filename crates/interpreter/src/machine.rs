@@ -6,7 +6,7 @@ use turnwright_canon::{Action, Command, CycleOrigin, OtherAxes, PathMode};
 use turnwright_control::{Control, Mode, Parameters, Setup, SetupFault, ThreadRecord};
 use turnwright_cycles::Element;
 use turnwright_diagnostics::{Diagnostic, Place, SourceId};
-use turnwright_syntax::{Block, ShortLine};
+use turnwright_syntax::Block;
 use turnwright_units::{Angle, Displacement, Length, Position, Radius, SurfaceSpeed, WorkTip};
 
 use crate::Environment;
@@ -31,6 +31,7 @@ use crate::offsets::{OffsetInForce, OffsetTables};
 use crate::parts::Parts;
 use crate::queue::Queue;
 use crate::report::Alarm;
+use crate::short::{KeptLines, TextLines};
 use crate::spindle::MachineLimits;
 use crate::strokes::Strokes;
 use crate::text::{Cursor, Line, Text};
@@ -239,7 +240,8 @@ pub(crate) struct Core {
 pub struct Interpreter {
     pub(crate) core: Core,
     block: Block,
-    line: ShortLine,
+    text_lines: TextLines,
+    kept_lines: KeptLines,
     pub(crate) alarm: Option<Alarm>,
 }
 
@@ -397,7 +399,13 @@ impl Interpreter {
         core.modal.offset_in_force = core.offset_called();
         core.start_at_reference();
         core.look_at_moves();
-        Ok(Self { core, block: Block::new(), line: ShortLine::default(), alarm: None })
+        Ok(Self {
+            core,
+            block: Block::new(),
+            text_lines: TextLines::default(),
+            kept_lines: KeptLines::default(),
+            alarm: None,
+        })
     }
 
     /// Where the tool tip stands.
@@ -480,7 +488,11 @@ impl Interpreter {
         if self.core.active.is_some() || self.alarm.is_some() {
             return None;
         }
-        let command = self.core.next_short_move(&mut self.line)?;
+        let command = if self.core.cache.current.is_some() {
+            self.core.next_short_move(&mut self.kept_lines)?
+        } else {
+            self.core.next_short_move(&mut self.text_lines)?
+        };
         self.core.idle_blocks = 0;
         self.core.moves_done = false;
         Some(command)

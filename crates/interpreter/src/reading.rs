@@ -144,7 +144,7 @@ impl Core {
                     self.count_idle(1)?;
                     self.go_on(environment)?;
                 }
-                Kept::Words { first, count, computed, plain } => {
+                Kept::Words { first, count, computed, plain, .. } => {
                     self.cache.refill(block, first, count);
                     self.count_idle(1 + limits::IDLE_WORD_BLOCKS)?;
                     if !computed.is_empty() {
@@ -317,8 +317,10 @@ impl Core {
             let mut codes = Vec::new();
             self.compile_words(block, &mut codes)?;
             let plain = self.plain(block);
+            let is_short =
+                plain.is_some() && codes.iter().all(|code| self.macros.machine.stands_alone(*code));
             let frame = self.kept_frame(block, start, behind);
-            self.cache.keep_words(block, &codes, plain, frame.of(self.text.bytes(&self.line)))
+            self.cache.keep_words(block, &codes, plain, is_short, frame.of(self.text.bytes(&self.line)))
         };
         if id.is_none() {
             self.macros.machine.forget(mark);

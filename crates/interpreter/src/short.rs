@@ -1,23 +1,42 @@
-//! The shortest way: a line of a path, straight from the text to its move.
+//! The shortest way: a line of a path, straight from its numbers to its move.
 //!
 //! In: a line that is nothing but a sequence number, G00 to G03, axis words, `R`, `I`, `K` and a feed, where nothing is
-//! to be said about any of them. Out: the move that [`plain`](crate::plain) and [`block`](crate::block) would make of
-//! it. Whatever needs a word of its own, for an alarm, a warning or a place, is left to them before anything has
-//! happened. What words mean stands in [`words`](crate::words), what functions do in theirs; only the way is another.
+//! to be said about any of them; read from the text ([`text`]) or kept in a loop ([`kept`]). Out: the move that
+//! [`plain`](crate::plain) and [`block`](crate::block) would make of it. Whatever needs a word of its own, for an alarm,
+//! a warning or a place, is left to them before anything has happened. What words mean stands in
+//! [`words`](crate::words), what functions do in theirs; only the way is another.
+
+mod kept;
+mod text;
 
 use turnwright_canon::{Action, Command, Shape};
-use turnwright_syntax::{Block, Decimal, LineEnd, ShortLine};
+use turnwright_syntax::{Block, Decimal, ShortLine};
 use turnwright_units::{Feed, Length, Position, WorkTip};
 
 use crate::functions::arc::short_centre;
 use crate::functions::{FunctionId, PathKind};
-use crate::machine::{BlockPlace, Core};
+use crate::machine::Core;
 use crate::plain;
-use crate::text::Line;
 use crate::words::{Role, is_strange_feed};
+
+pub(crate) use self::kept::KeptLines;
+pub(crate) use self::text::TextLines;
 
 const CROSS: u32 = Block::bit(b'X') | Block::bit(b'U');
 const ALONG: u32 = Block::bit(b'Z') | Block::bit(b'W');
+
+/// Where short lines come from.
+pub(crate) trait ShortLines {
+    /// The line that comes next, when it may go the short way. Nothing has happened then that the long way would not
+    /// find as it was.
+    fn next_line(&mut self, core: &mut Core) -> Option<&ShortLine>;
+
+    /// Makes that line the block in work.
+    fn take_line(&self, core: &mut Core, sequence: Option<u32>);
+
+    /// That line is left to the long way.
+    fn leave_line(&self, _core: &mut Core) {}
+}
 
 /// What a short line asks for.
 pub(crate) struct ShortMove<'l> {
@@ -49,68 +68,68 @@ struct Changes {
 
 impl Core {
     /// The move of the next line that makes one, as long as lines are short; `None` when the next one is another.
-    #[inline]
-    pub(crate) fn next_short_move(&mut self, line: &mut ShortLine) -> Option<Command> {
-        while self.goes_short() {
-            let end = line.read(self.text.ahead(), plain::PLAIN)?;
-            let (to, changes) = self.short_target(line)?;
+    #[inline(always)]
+    pub(crate) fn next_short_move(&mut self, lines: &mut impl ShortLines) -> Option<Command> {
+        loop {
+            if !self.goes_short() {
+                return None;
+            }
+            let line = lines.next_line(self)?;
+            let Some((to, changes)) = self.short_target(line) else { break };
             let (id, _) = changes.code.unwrap_or((self.modal.motion, 0));
             let short = ShortMove { line, from: self.modal.position, to };
             // Each makes its move where it is given out: one that is carried there is waited for.
-            match id.get().path? {
-                PathKind::Rapid if !short.has_bend() => {
-                    if self.take_short_line(&short, end, &changes) {
+            match id.get().path {
+                Some(PathKind::Rapid) if !short.has_bend() => {
+                    if self.take_short_line(lines, to, &changes) {
                         let path = self.rapid_path();
                         let action = Action::Rapid { to, path, others: None };
                         return Some(Command::new(action, self.origin_outside_cycles()));
                     }
                 }
-                PathKind::Line if !short.has_bend() => {
-                    let feed = self.short_cut_feed(&changes)?;
-                    if self.take_short_line(&short, end, &changes) {
+                Some(PathKind::Line) if !short.has_bend() => {
+                    let Some(feed) = self.short_cut_feed(&changes) else { break };
+                    if self.take_short_line(lines, to, &changes) {
                         let action = Action::Feed { to, shape: Shape::Line, feed, others: None };
                         return Some(Command::new(action, self.origin_outside_cycles()));
                     }
                 }
-                PathKind::Arc(turn) => {
-                    let feed = self.short_cut_feed(&changes)?;
-                    let centre = short_centre(self, &short, turn)?;
-                    self.take_short_line(&short, end, &changes);
+                Some(PathKind::Arc(turn)) => {
+                    let Some(feed) = self.short_cut_feed(&changes) else { break };
+                    let Some(centre) = short_centre(self, &short, turn) else { break };
+                    self.take_short_line(lines, to, &changes);
                     let shape = Shape::Arc { turn, centre };
                     let action = Action::Feed { to, shape, feed, others: None };
                     return Some(Command::new(action, self.origin_outside_cycles()));
                 }
-                PathKind::Rapid | PathKind::Line => return None,
+                _ => break,
             }
         }
+        lines.leave_line(self);
         None
     }
 
     /// The feed that a cut of a short line has.
-    #[inline]
+    #[inline(always)]
     fn short_cut_feed(&self, changes: &Changes) -> Option<Feed> {
         let feed = changes.feed.or(self.modal.feed).and_then(|feed| self.feed_of(feed))?;
         (!self.cuts_beside_standing_spindle()).then_some(feed)
     }
 
     /// Whether nothing asks to see lines or moves on their way.
-    #[inline]
+    #[inline(always)]
     fn goes_short(&self) -> bool {
         self.is_plain
             && !self.is_over
             && !self.looks_at_moves
-            && self.from == 0
-            && self.cache.current.is_none()
-            && self.frames.is_empty()
             && self.waiting.is_none()
             && self.macros.interrupt.is_none()
             && self.macros.state.single_block == 0
             && self.blocks_run < self.options.blocks_max
-            && !self.cache.is_hot(self.text.source(), self.text.next_offset())
     }
 
     /// The end point of a short line, and what else it says, where all of it is in order.
-    #[inline]
+    #[inline(always)]
     fn short_target(&self, line: &ShortLine) -> Option<(Position<WorkTip>, Changes)> {
         let present = line.present();
         if present & plain::AXES == 0 {
@@ -149,7 +168,7 @@ impl Core {
     }
 
     /// As [`Core::axis_word`], where one of the two letters stands.
-    #[inline]
+    #[inline(always)]
     fn short_axis_word<'l>(
         &self,
         line: &'l ShortLine,
@@ -164,7 +183,7 @@ impl Core {
     }
 
     /// As [`Core::feed_word`], where nothing is to be said.
-    #[inline]
+    #[inline(always)]
     fn short_feed(&self, number: Decimal) -> Option<Length> {
         let per_revolution = self.modal.feed_mode == crate::modal::FeedMode::PerRevolution;
         let feed = self.plain_feed(number, per_revolution).filter(|_| !number.is_negative)?;
@@ -173,16 +192,14 @@ impl Core {
     }
 
     /// Makes a short line the block in work, and its end the tool's place; whether that is another one.
-    #[inline]
-    fn take_short_line(&mut self, short: &ShortMove<'_>, end: LineEnd, changes: &Changes) -> bool {
-        self.line = self.text.take_ahead(end);
-        self.block_from = 0;
-        let Line { number: line, offset: line_offset, .. } = self.line;
-        let (first_byte, last_byte) = short.line.bytes();
-        let Changes { code, sequence, feed } = *changes;
-        self.at =
-            BlockPlace { source: self.text.source(), line, line_offset, first_byte, last_byte, sequence };
-        self.cache.forget_way();
+    #[inline(always)]
+    fn take_short_line(
+        &mut self,
+        lines: &impl ShortLines,
+        to: Position<WorkTip>,
+        &Changes { code, sequence, feed }: &Changes,
+    ) -> bool {
+        lines.take_line(self, sequence);
         self.blocks_run += 1;
         if sequence.is_some() {
             self.modal.in_force.sequence = sequence;
@@ -193,9 +210,9 @@ impl Core {
         if feed.is_some() {
             (self.modal.feed, self.modal.feed_is_lead) = (feed, false);
         }
-        self.modal.position = short.to;
-        let goes = short.to != self.tip;
-        self.tip = short.to;
+        self.modal.position = to;
+        let goes = to != self.tip;
+        self.tip = to;
         goes
     }
 }

@@ -1,7 +1,7 @@
 //! Where lines end: LF, CR LF, or CR alone, mixed as files from shop floors are.
 
 /// The end of a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineEnd {
     /// First byte of the line end.
     pub start: usize,

@@ -6,6 +6,7 @@
 
 use crate::lines::LineEnd;
 use crate::number::{DIGITS_MAX, Decimal};
+use crate::{Value, Word};
 
 /// Places for letters: as many as there are, and more, so that every remainder is one.
 const PLACES: usize = 32;
@@ -63,6 +64,27 @@ impl ShortLine {
             _ => return None,
         };
         Some(LineEnd { start: at, next })
+    }
+
+    /// Takes the words of a block that was read before, all of one letter each. Numbers that are not known yet have to
+    /// be [`set`](Self::set).
+    pub fn fill(&mut self, words: &[Word]) {
+        self.present = 0;
+        for word in words {
+            let number = if let Value::Number(number) = word.value { number } else { Decimal::default() };
+            self.set(word.address, number);
+        }
+        self.first = words.first().map_or(0, |word| word.address);
+        self.first_byte = words.first().map_or(0, |word| word.start);
+        self.last_byte = words.last().map_or(0, |word| word.end);
+    }
+
+    /// Gives a letter its number.
+    #[inline]
+    pub fn set(&mut self, letter: u8, number: Decimal) {
+        let place = usize::from(letter.wrapping_sub(b'A')) % PLACES;
+        self.present |= 1 << place;
+        self.numbers[place] = number;
     }
 
     /// The letters of the line, bit 0 for A.

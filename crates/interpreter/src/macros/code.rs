@@ -213,7 +213,7 @@ impl Machine {
 
     /// The value of code that needs nothing but variables ([`Machine::stands_alone`]); `None` where there is none.
     #[inline]
-    pub(super) fn value(&mut self, code: Code, variables: &Variables) -> Option<f64> {
+    pub(crate) fn value(&mut self, code: Code, variables: &Variables) -> Option<f64> {
         if code.is_one_operation()
             && let Some(value) = self.at_once(code, variables)
         {
@@ -223,7 +223,7 @@ impl Machine {
     }
 
     /// Whether running code twice gives the same twice, and asks nobody.
-    pub(super) fn stands_alone(&self, code: Code) -> bool {
+    pub(crate) fn stands_alone(&self, code: Code) -> bool {
         let ops = self.code.get(code.start as usize..code.end as usize).unwrap_or_default();
         ops.iter().all(|op| match op {
             Op::Read | Op::RoundToIncrement | Op::AddPoint(_) | Op::Parameter | Op::AxisNumber(_) => false,
