@@ -253,6 +253,35 @@ fn the_operator_may_come_between_at_any_time() {
 }
 
 #[test]
+fn an_override_at_the_first_instant_holds_from_there() {
+    for seed in 0..100 {
+        let case = Case::random(seed);
+        let mut preset = Pace::with_capacity(256, case.limits);
+        preset.preset(Feedrate::Override(0.5), false);
+        case.pieces.iter().for_each(|(length, ordered, limit)| {
+            preset.push(*length, *ordered, *limit).expect("room");
+        });
+        preset.close();
+        preset.plan();
+        let mut pace = case.pace();
+        pace.plan();
+        pace.interrupt(0.0, Feedrate::Override(0.5), false);
+        pace.plan();
+        assert_eq!(pace.duration_s(), preset.duration_s(), "{seed}");
+        // Held and released again within one instant, far from the start, it is where it was.
+        pace.interrupt(0.5, Feedrate::Override(0.5), true);
+        pace.plan();
+        let rest = pace.at(1e4).at_mm;
+        pace.forget_before(1e4);
+        pace.interrupt(1e4, Feedrate::Override(0.5), false);
+        pace.plan();
+        pace.interrupt(1e4, Feedrate::Override(1.0), false);
+        pace.plan();
+        assert_eq!(pace.at(1e4).at_mm, rest, "{seed}");
+    }
+}
+
+#[test]
 fn a_higher_override_is_never_later() {
     for seed in 0..300 {
         let case = Case::random(seed);

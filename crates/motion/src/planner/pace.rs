@@ -277,19 +277,7 @@ impl Pace {
         }
         self.is_held = is_held;
         if time_s < self.front.time_s {
-            let Some(running) = self.phases.cut_at(time_s) else {
-                self.front = Front::REST;
-                return;
-            };
-            let speed = running.speed(time_s).max(0.0);
-            self.front = Front { time_s, at_mm: running.end_mm, square: speed * speed, ..self.front };
-            let changed = self.phases.iter().rev().find(|phase| phase.acceleration != 0.0);
-            if let Some(phase) = changed {
-                self.front.trend = if phase.acceleration > 0.0 { Trend::Rising } else { Trend::Falling };
-                self.front.lasting_s = time_s - phase.end_s();
-            } else {
-                self.front.lasting_s = f64::INFINITY;
-            }
+            self.take_back(time_s);
         } else if self.front.square == 0.0 {
             // It stands, and stood until now.
             self.front.lasting_s += time_s - self.front.time_s;
@@ -297,6 +285,24 @@ impl Pace {
         }
         self.front.is_interrupted = true;
         self.change_feedrate(feedrate);
+    }
+
+    /// Takes back what is planned beyond a time.
+    fn take_back(&mut self, time_s: f64) {
+        let Some(running) = self.phases.cut_at(time_s) else {
+            // It has not begun to move.
+            self.front = Front { time_s, at_mm: self.phases.place(time_s), ..Front::REST };
+            return;
+        };
+        let speed = running.speed(time_s).max(0.0);
+        self.front = Front { time_s, at_mm: running.end_mm, square: speed * speed, ..self.front };
+        let changed = self.phases.iter().rev().find(|phase| phase.acceleration != 0.0);
+        if let Some(phase) = changed {
+            self.front.trend = if phase.acceleration > 0.0 { Trend::Rising } else { Trend::Falling };
+            self.front.lasting_s = time_s - phase.end_s();
+        } else {
+            self.front.lasting_s = f64::INFINITY;
+        }
     }
 
     /// Lets another feedrate hold. What is so near that the tool may already be slowing down for it keeps its width,
