@@ -6,59 +6,80 @@
 use std::collections::VecDeque;
 
 use crate::Dynamics;
-use crate::dynamics::AXIS_COUNT;
-use crate::leg::{Leg, Place};
-use crate::planner::{Full, Pace};
+use crate::dynamics::{CornerLaw, Demand};
+use crate::leg::{Heading, Leg};
+use crate::planner::{Full, Pace, SPEED_MIN_MM_PER_S};
 
 /// Stretches that wait for the corners behind them. With more inside one corner's time, the corner is passed as
 /// slowly as if the stretch behind were all corners.
 const WAITING_MAX: usize = 64;
 
-/// The orders of an operator may raise speeds by this, so the time of a corner is looked at for speeds so high.
-const OVERRIDE_MAX: f64 = 2.54;
-
 /// A stretch of a leg and the corner at its end.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
-    start_mm: f64,
+    length_mm: f64,
     end_mm: f64,
+    /// No tool is sooner at its end, seconds from the start of the path.
+    soonest_s: f64,
     ordered_mm_per_s: f64,
     limit_mm_per_s: f64,
     corner_mm_per_s: f64,
-    turn: [f64; AXIS_COUNT],
-    bend: [f64; AXIS_COUNT],
+    /// That of all corners before the one at its end.
+    demand: Demand,
     has_corner: bool,
 }
 
 /// The legs on their way to the pace.
 #[derive(Clone, Debug)]
 pub(crate) struct Corners {
+    law: CornerLaw,
+    /// Overrides and dry runs may ask for more than is ordered.
+    has_operator: bool,
     waiting: VecDeque<Stretch>,
     end_mm: f64,
-    last: Option<(Place, Place)>,
+    soonest_s: f64,
+    heading: Option<Heading>,
+    /// That of all corners met.
+    demand: Demand,
+    /// The first of those waiting whose corner may be passed together with the next one.
+    group: usize,
+    /// The last corner before the group, when it is apart only because the path is slow enough since.
+    apart: Option<usize>,
 }
 
 impl Corners {
-    pub(crate) fn new() -> Self {
-        Self { waiting: VecDeque::with_capacity(WAITING_MAX), end_mm: 0.0, last: None }
+    pub(crate) fn new(dynamics: &Dynamics, has_operator: bool) -> Self {
+        Self {
+            law: dynamics.corner_law(),
+            has_operator,
+            // Twice, so that they seldom come to lie around the end of the ring.
+            waiting: VecDeque::with_capacity(2 * WAITING_MAX),
+            end_mm: 0.0,
+            soonest_s: 0.0,
+            heading: None,
+            demand: Demand::default(),
+            group: 0,
+            apart: None,
+        }
     }
 
     pub(crate) fn clear(&mut self) {
         self.waiting.clear();
-        (self.end_mm, self.last) = (0.0, None);
+        (self.end_mm, self.soonest_s, self.heading) = (0.0, 0.0, None);
+        (self.demand, self.group, self.apart) = (Demand::default(), 0, None);
     }
 
     /// The next leg begins: the corner between it and the one before is known.
-    pub(crate) fn turn_into(&mut self, leg: &Leg, dynamics: &Dynamics) {
-        if let (Some((direction, curvature)), Some(before)) = (self.last, self.waiting.back_mut()) {
-            let difference =
-                |new: Place, old: Place| std::array::from_fn(|axis| (new[axis] - old[axis]).abs());
-            before.turn = difference(leg.direction(0.0), direction);
-            before.bend = difference(leg.curvature(0.0), curvature);
+    pub(crate) fn turn_into(&mut self, leg: &Leg) {
+        let start = leg.heading(0.0);
+        if let (Some(end), Some(before)) = (&self.heading, self.waiting.back_mut())
+            && self.law.time_s > 0.0
+        {
             before.has_corner = true;
-            self.look_back(dynamics);
+            self.law.add(&mut self.demand, end, &start);
+            self.look_back();
         }
-        self.last = Some((leg.direction(1.0), leg.curvature(1.0)));
+        self.heading = Some(if leg.arc.is_some() { leg.heading(1.0) } else { start });
     }
 
     /// Whether there is room for another stretch; a corner before it is known by now.
@@ -68,73 +89,83 @@ impl Corners {
 
     /// A stretch of the leg that has begun.
     pub(crate) fn add(&mut self, length_mm: f64, ordered_mm_per_s: f64, limit_mm_per_s: f64) {
-        let start_mm = self.end_mm;
         self.end_mm += length_mm;
+        self.soonest_s += length_mm / limit_mm_per_s.max(SPEED_MIN_MM_PER_S);
         self.waiting.push_back(Stretch {
-            start_mm,
+            length_mm,
             end_mm: self.end_mm,
+            soonest_s: self.soonest_s,
             ordered_mm_per_s,
             limit_mm_per_s,
             corner_mm_per_s: f64::INFINITY,
-            turn: [0.0; AXIS_COUNT],
-            bend: [0.0; AXIS_COUNT],
+            demand: self.demand,
             has_corner: false,
         });
     }
 
     /// Lets the corner just met slow down those that are passed together with it.
-    fn look_back(&mut self, dynamics: &Dynamics) {
-        let (mut turn, mut bend) = ([0.0; AXIS_COUNT], [0.0; AXIS_COUNT]);
-        let mut speeds = [f64::INFINITY; WAITING_MAX];
-        let mut oldest = self.waiting.len();
-        for (index, stretch) in
-            self.waiting.iter().enumerate().rev().filter(|(_, stretch)| stretch.has_corner)
-        {
-            for axis in 0..AXIS_COUNT {
-                turn[axis] += stretch.turn[axis];
-                bend[axis] += stretch.bend[axis];
+    ///
+    /// The longer a group of corners, the slower it is passed, and the faster it would have to be passed for all of
+    /// it to lie within one time: the group ends where these meet, and with each corner it ends no earlier.
+    fn look_back(&mut self) {
+        let waiting = self.waiting.make_contiguous();
+        let last = waiting.len() - 1;
+        let is_out = |stretch: &Stretch| self.soonest_s - stretch.soonest_s >= self.law.time_s;
+        let way_speed = |stretch: &Stretch| (self.end_mm - stretch.end_mm) / self.law.time_s;
+        let together = loop {
+            let stretch = &waiting[self.group];
+            if is_out(stretch) && self.group < last {
+                self.apart = None;
+            } else if stretch.has_corner {
+                let together = self.law.speed(&self.demand.since(&stretch.demand));
+                if way_speed(stretch) < together || self.group == last {
+                    break together;
+                }
+                self.apart = Some(self.group);
             }
-            // So fast the corners from here on are passed within one time, or so slowly that they are not.
-            let apart = (self.end_mm - stretch.end_mm) / (2.0 * dynamics.corner_s);
-            let together = dynamics.corner_speed(&turn, &bend);
-            (oldest, speeds[index]) = (index, together.max(apart));
-            if apart >= together {
-                break;
-            }
+            self.group += 1;
+        };
+        self.apart = self.apart.filter(|index| !is_out(&waiting[*index]));
+        let apart = self.apart.map_or(f64::INFINITY, |index| way_speed(&waiting[index]));
+        let start = self.apart.map_or(self.group, |index| index + 1);
+        for stretch in &mut waiting[start..=self.group] {
+            stretch.limit_mm_per_s = stretch.limit_mm_per_s.min(apart);
         }
-        let mut slowest = f64::INFINITY;
-        for (stretch, speed) in self.waiting.iter_mut().zip(speeds).skip(oldest) {
+        let slowest = together.min(apart);
+        waiting[self.group].corner_mm_per_s = waiting[self.group].corner_mm_per_s.min(slowest);
+        for stretch in &mut waiting[self.group + 1..] {
             stretch.limit_mm_per_s = stretch.limit_mm_per_s.min(slowest);
-            slowest = slowest.min(speed);
-            if stretch.has_corner {
-                stretch.corner_mm_per_s = stretch.corner_mm_per_s.min(slowest);
-            }
+            stretch.corner_mm_per_s = stretch.corner_mm_per_s.min(slowest);
         }
     }
 
     /// Gives to the pace what no later corner can slow down any more; everything when the path is over.
-    pub(crate) fn pour(&mut self, pace: &mut Pace, dynamics: &Dynamics, is_over: bool) -> Result<(), Full> {
-        while let Some(first) = self.waiting.front().copied() {
-            let known_mm = self.end_mm - first.end_mm;
-            let apart = known_mm / (2.0 * dynamics.corner_s);
-            let fastest = (first.ordered_mm_per_s * OVERRIDE_MAX).min(first.limit_mm_per_s);
-            let is_last = self.waiting.len() == 1;
-            if !is_over && (is_last || apart < fastest.min(first.corner_mm_per_s) && self.has_room()) {
+    pub(crate) fn pour(&mut self, pace: &mut Pace, is_over: bool) -> Result<(), Full> {
+        while let Some(first) = self.waiting.front() {
+            let is_apart = self.soonest_s - first.soonest_s >= self.law.time_s;
+            if !is_over && !is_apart && self.has_room() {
                 return Ok(());
             }
             if !pace.has_room(2) {
                 return Err(Full);
             }
-            pace.push(first.end_mm - first.start_mm, first.ordered_mm_per_s, first.limit_mm_per_s)?;
+            pace.push(first.length_mm, first.ordered_mm_per_s, first.limit_mm_per_s)?;
             if first.has_corner {
-                let is_early = !is_over && apart < first.corner_mm_per_s && apart < fastest;
-                let speed = if is_early { apart } else { first.corner_mm_per_s };
-                // Slower than its own stretch, or it holds nobody up.
-                if speed < fastest {
+                let apart = (self.end_mm - first.end_mm) / self.law.time_s;
+                let is_early = !is_over && !is_apart;
+                let speed = if is_early { first.corner_mm_per_s.min(apart) } else { first.corner_mm_per_s };
+                // Slower than the stretches beside it, or it holds nobody up.
+                let fastest = |stretch: &Stretch| match self.has_operator {
+                    true => stretch.limit_mm_per_s,
+                    false => stretch.ordered_mm_per_s.min(stretch.limit_mm_per_s),
+                };
+                if speed < self.waiting.iter().take(2).map(fastest).fold(f64::INFINITY, f64::min) {
                     pace.push(0.0, f64::INFINITY, speed)?;
                 }
             }
             self.waiting.pop_front();
+            self.group = self.group.saturating_sub(1);
+            self.apart = self.apart.and_then(|index| index.checked_sub(1));
         }
         Ok(())
     }

@@ -4,6 +4,7 @@
 //! has its share of what an axis can do, so that together they never ask for more. Rapids, alone on a straight way,
 //! have all of it.
 
+use crate::leg::{Heading, Place};
 use crate::planner::RunLimits;
 
 /// Acceleration and jerk of one axis: mm of slide, or degrees, per s² and s³.
@@ -160,35 +161,88 @@ impl Dynamics {
             .min(libm::cbrt(jerk * radius_mm * radius_mm))
     }
 
-    /// The highest speed over corners that lie within the time of one: `turn` is the sum of the changes of direction
-    /// of each axis, `bend` that of the changes of curvature.
-    ///
-    /// The axes are averaged twice over `corner_s`: a change of speed by v·turn takes an acceleration of v·turn/T and
-    /// a jerk of v·turn/T², a change of acceleration by v²·bend a jerk of v²·bend/T.
-    pub(crate) fn corner_speed(&self, turn: &[f64; AXIS_COUNT], bend: &[f64; AXIS_COUNT]) -> f64 {
-        if self.acc_dec == AccDec::After {
-            return f64::INFINITY;
-        }
+    /// What corners ask for.
+    pub(crate) fn corner_law(&self) -> CornerLaw {
         let time = self.corner_s;
-        let mut speed = f64::INFINITY;
-        for ((axis, turn), bend) in self.axes.iter().zip(turn).zip(bend) {
-            let jerk = JERK_CORNER * axis.jerk_per_s3;
-            if *turn > TURN_NONE {
-                let step = (CORNER * axis.acceleration_per_s2).min(jerk * time) * time;
-                speed = speed.min(step / turn);
+        let jerk = |axis: usize| JERK_CORNER * self.axes[axis].jerk_per_s3;
+        let step = |axis: usize| (CORNER * self.axes[axis].acceleration_per_s2).min(jerk(axis) * time) * time;
+        CornerLaw {
+            // After interpolation corners are cut short, whatever the speed.
+            time_s: if self.acc_dec == AccDec::After { 0.0 } else { 2.0 * time },
+            per_turn: std::array::from_fn(|axis| 1.0 / step(axis)),
+            per_bend: std::array::from_fn(|axis| 1.0 / (time * jerk(axis))),
+            turn_jerk: std::array::from_fn(|axis| step(axis) / (time * time * jerk(axis))),
+        }
+    }
+}
+
+/// How fast corners may be passed.
+///
+/// The axes are averaged twice over [`Dynamics::corner_s`], T: a change of speed by v·turn takes an acceleration of
+/// v·turn/T and a jerk of v·turn/T², a change of acceleration by v²·bend a jerk of v²·bend/T.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CornerLaw {
+    /// Seconds in which a corner is passed: those that lie closer together count together.
+    pub(crate) time_s: f64,
+    /// Demand of a change of direction by 1.
+    per_turn: Place,
+    /// Demand of a change of curvature by 1.
+    per_bend: Place,
+    /// Part of the jerk that a change of direction takes at the speed that its demand allows.
+    turn_jerk: Place,
+}
+
+/// What corners ask of each axis, added up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Demand {
+    /// Of acceleration, and of jerk as far as directions change: 1 / the speed that is allowed, s/mm.
+    turn: Place,
+    /// Of jerk where curvatures change: 1 / the square of the speed that would be allowed, s²/mm².
+    bend: Place,
+    /// How many of the corners have such a change.
+    bends: u32,
+}
+
+impl Demand {
+    /// That of the corners met since it was `earlier`.
+    pub(crate) fn since(&self, earlier: &Self) -> Self {
+        let difference =
+            |now: &Place, then: &Place| -> Place { std::array::from_fn(|axis| now[axis] - then[axis]) };
+        let bends = self.bends.wrapping_sub(earlier.bends);
+        let bend = if bends > 0 { difference(&self.bend, &earlier.bend) } else { Place::default() };
+        Self { turn: difference(&self.turn, &earlier.turn), bend, bends }
+    }
+}
+
+impl CornerLaw {
+    /// Adds what a change of heading asks for.
+    pub(crate) fn add(&self, sum: &mut Demand, from: &Heading, to: &Heading) {
+        let weigh = |sum: &mut Place, from: &Place, to: &Place, weights: &Place| {
+            for axis in 0..AXIS_COUNT {
+                sum[axis] += (to[axis] - from[axis]).abs() * weights[axis];
             }
-            if *bend > 0.0 {
-                // v²·bend/T + v·turn/T² = jerk
-                let (square, linear) = (bend / time, turn / (time * time));
-                speed = speed.min(2.0 * jerk / (linear + (linear * linear + 4.0 * square * jerk).sqrt()));
+        };
+        weigh(&mut sum.turn, &from.direction, &to.direction, &self.per_turn);
+        if from.is_bent || to.is_bent {
+            weigh(&mut sum.bend, &from.curvature, &to.curvature, &self.per_bend);
+            sum.bends = sum.bends.wrapping_add(1);
+        }
+    }
+
+    /// The highest speed at which a demand is met.
+    pub(crate) fn speed(&self, demand: &Demand) -> f64 {
+        let larger = |one: f64, other: f64| if one > other { one } else { other };
+        let mut slowness = demand.turn.into_iter().fold(0.0, larger);
+        if demand.bends > 0 {
+            for ((turn, bend), part) in demand.turn.iter().zip(&demand.bend).zip(&self.turn_jerk) {
+                // v²·bend + v·turn·part = 1
+                let linear = turn * part;
+                slowness = larger(slowness, (linear + (linear * linear + 4.0 * bend).sqrt()) / 2.0);
             }
         }
-        speed
+        1.0 / slowness
     }
 }
 
 /// A longer time would round corners beyond what any control does, s.
 pub const CORNER_S_MAX: f64 = 1.0;
-
-/// Changes of direction below this are rounding.
-const TURN_NONE: f64 = 1e-12;

@@ -38,31 +38,30 @@ const STRETCHES_MAX: f64 = 8192.0;
 /// Gives the stretches of a leg.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stretches {
-    pub(crate) leg: Leg,
     order: Order,
+    /// The highest speed on the leg, whatever is ordered.
+    pub(crate) limit_mm_per_s: f64,
     done_mm: f64,
 }
 
 impl Stretches {
-    pub(crate) fn new(leg: Leg, order: Order) -> Self {
-        Self { leg, order, done_mm: 0.0 }
+    pub(crate) fn new(order: Order, limit_mm_per_s: f64) -> Self {
+        Self { order, limit_mm_per_s, done_mm: 0.0 }
     }
 
-    /// Whether the whole leg has been given.
-    pub(crate) fn is_done(&self) -> bool {
-        self.done_mm >= self.leg.length_mm
-    }
-
-    /// Length and ordered speed of the next stretch.
-    pub(crate) fn next(&mut self, spindle: &mut TurningSpindle) -> (f64, f64) {
-        let rest_mm = self.leg.length_mm - self.done_mm;
-        match self.order {
+    /// Length and ordered speed of the next stretch of the leg; `None` when all of it has been given.
+    pub(crate) fn next(&mut self, leg: &Leg, spindle: &mut TurningSpindle) -> Option<(f64, f64)> {
+        let rest_mm = leg.length_mm - self.done_mm;
+        if self.done_mm >= leg.length_mm {
+            return None;
+        }
+        Some(match self.order {
             Order::Speed(speed) => {
-                self.done_mm = self.leg.length_mm;
+                self.done_mm = leg.length_mm;
                 (rest_mm, speed)
             }
             Order::Surface { law, feed_mm_per_rev, slowness } => {
-                let x_at = |done_mm: f64| self.leg.place(done_mm / self.leg.length_mm)[X];
+                let x_at = |done_mm: f64| leg.place(done_mm / leg.length_mm)[X];
                 let start = law.rpm_at(x_at(self.done_mm));
                 let is_even = |length: f64| {
                     [0.5, 1.0].into_iter().all(|part| {
@@ -71,7 +70,7 @@ impl Stretches {
                     })
                 };
                 let mut length = rest_mm;
-                let shortest = STRETCH_MIN_MM.max(self.leg.length_mm / STRETCHES_MAX);
+                let shortest = STRETCH_MIN_MM.max(leg.length_mm / STRETCHES_MAX);
                 while length > 2.0 * shortest && !is_even(length) {
                     length /= 2.0;
                 }
@@ -85,10 +84,10 @@ impl Stretches {
                     Some(mean_rpm) => feed_mm_per_rev * mean_rpm / 60.0,
                     None => 1.0 / (60.0 * minutes_per_mm),
                 };
-                self.done_mm = if length == rest_mm { self.leg.length_mm } else { self.done_mm + length };
+                self.done_mm = if length == rest_mm { leg.length_mm } else { self.done_mm + length };
                 (length, speed)
             }
-        }
+        })
     }
 }
 

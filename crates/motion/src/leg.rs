@@ -32,6 +32,17 @@ pub(crate) struct LegArc {
     pub(crate) path: ArcPath,
 }
 
+/// Where a way goes at one place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Heading {
+    /// How much each axis moves on the next millimetre.
+    pub(crate) direction: Place,
+    /// How the direction changes on the next millimetre.
+    pub(crate) curvature: Place,
+    /// It changes at all.
+    pub(crate) is_bent: bool,
+}
+
 /// One block's way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Leg {
@@ -59,28 +70,21 @@ impl Leg {
         place
     }
 
-    /// How much each axis moves on the next millimetre, at the start or the end.
-    pub(crate) fn direction(&self, part: f64) -> Place {
-        let mut direction: Place =
-            std::array::from_fn(|axis| (self.to[axis] - self.from[axis]) / self.length_mm);
+    /// Where it goes, at the start or the end.
+    pub(crate) fn heading(&self, part: f64) -> Heading {
+        let per_mm = 1.0 / self.length_mm;
+        let direction = std::array::from_fn(|axis| (self.to[axis] - self.from[axis]) * per_mm);
+        let mut heading = Heading { direction, curvature: Place::default(), is_bent: false };
         if let Some(LegArc { axes: [right, up], path }) = &self.arc {
-            let angle = path.start_rad + path.sweep_rad * part;
-            let speed = path.sweep_rad * path.radius_at(part) / self.length_mm;
-            (direction[*right], direction[*up]) = (-speed * libm::sin(angle), speed * libm::cos(angle));
+            let (sine, cosine) = libm::sincos(path.start_rad + path.sweep_rad * part);
+            let turning = path.sweep_rad * per_mm;
+            let speed = turning * path.radius_at(part);
+            (heading.direction[*right], heading.direction[*up]) = (-speed * sine, speed * cosine);
+            let size = -turning * speed;
+            (heading.curvature[*right], heading.curvature[*up]) = (size * cosine, size * sine);
+            heading.is_bent = true;
         }
-        direction
-    }
-
-    /// How the direction changes on the next millimetre, at the start or the end.
-    pub(crate) fn curvature(&self, part: f64) -> Place {
-        let mut curvature = [0.0; AXIS_COUNT];
-        if let Some(LegArc { axes: [right, up], path }) = &self.arc {
-            let angle = path.start_rad + path.sweep_rad * part;
-            let turning = path.sweep_rad / self.length_mm;
-            let size = -turning * turning * path.radius_at(part);
-            (curvature[*right], curvature[*up]) = (size * libm::cos(angle), size * libm::sin(angle));
-        }
-        curvature
+        heading
     }
 
     /// The smaller of the radii at both ends of an arc.

@@ -125,7 +125,7 @@ impl Player {
             now_s: 0.0,
             panel: Panel::default(),
             changes: VecDeque::new(),
-            run: CuttingRun::new(dynamics),
+            run: CuttingRun::new(dynamics, true),
             has_others: false,
             mode: PathMode::Continuous,
             blocks: VecDeque::new(),
@@ -282,7 +282,7 @@ impl Player {
                 self.play_run(sink);
             }
             let limit = leg_limit(&leg, &self.clock, &self.dynamics, self.run.pace.limits());
-            self.run.push(leg, order.order, limit);
+            self.run.push(&leg, order.order, limit);
             self.blocks.push_back(block);
         }
         self.clock = after;

@@ -31,8 +31,8 @@ pub(crate) struct CuttingRun {
     legs: VecDeque<Placed>,
     end_mm: f64,
     corners: Corners,
-    /// The leg whose stretches are being taken, and the highest speed on it.
-    current: Option<(Stretches, f64)>,
+    /// What is left of the last leg.
+    current: Option<Stretches>,
     pub(crate) spindle: TurningSpindle,
     is_over: bool,
     /// Seconds from the end of the profile until the axes stand in position.
@@ -40,13 +40,14 @@ pub(crate) struct CuttingRun {
 }
 
 impl CuttingRun {
-    pub(crate) fn new(dynamics: Dynamics) -> Self {
+    /// For legs that nobody, or an operator, comes between.
+    pub(crate) fn new(dynamics: Dynamics, has_operator: bool) -> Self {
         Self {
             dynamics,
             pace: Pace::with_capacity(2 * LEGS_MAX, dynamics.cutting(false)),
             legs: VecDeque::with_capacity(LEGS_MAX),
             end_mm: 0.0,
-            corners: Corners::new(),
+            corners: Corners::new(&dynamics, has_operator),
             current: None,
             spindle: TurningSpindle { rpm: 0.0, ramp_rpm_per_s: 0.0 },
             is_over: true,
@@ -73,11 +74,11 @@ impl CuttingRun {
     }
 
     /// Takes up a leg, when there is room.
-    pub(crate) fn push(&mut self, leg: Leg, order: Order, limit_mm_per_s: f64) {
+    pub(crate) fn push(&mut self, leg: &Leg, order: Order, limit_mm_per_s: f64) {
         self.end_mm += leg.length_mm;
-        self.legs.push_back(Placed { leg, end_mm: self.end_mm });
-        self.corners.turn_into(&leg, &self.dynamics);
-        self.current = Some((Stretches::new(leg, order), limit_mm_per_s));
+        self.legs.push_back(Placed { leg: *leg, end_mm: self.end_mm });
+        self.corners.turn_into(leg);
+        self.current = Some(Stretches::new(order, limit_mm_per_s));
         self.feed();
     }
 
@@ -95,14 +96,13 @@ impl CuttingRun {
 
     /// Takes stretches as far as there is room.
     fn feed(&mut self) {
-        while let Some((stretches, limit)) = &mut self.current {
-            if stretches.is_done() {
-                self.current = None;
-            } else if self.corners.has_room() {
-                let (length, speed) = stretches.next(&mut self.spindle);
-                self.corners.add(length, speed, *limit);
-            } else if self.corners.pour(&mut self.pace, &self.dynamics, false).is_err() {
+        while let (Some(stretches), Some(last)) = (&mut self.current, self.legs.back()) {
+            if self.corners.pour(&mut self.pace, false).is_err() && !self.corners.has_room() {
                 return;
+            }
+            match stretches.next(&last.leg, &mut self.spindle) {
+                Some((length, speed)) => self.corners.add(length, speed, stretches.limit_mm_per_s),
+                None => self.current = None,
             }
         }
     }
@@ -112,7 +112,7 @@ impl CuttingRun {
         loop {
             self.feed();
             let is_over = self.is_over && self.current.is_none();
-            let poured = self.corners.pour(&mut self.pace, &self.dynamics, is_over).is_ok();
+            let poured = self.corners.pour(&mut self.pace, is_over).is_ok();
             if poured && is_over {
                 self.pace.close();
             }

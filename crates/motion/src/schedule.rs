@@ -56,7 +56,7 @@ impl Schedule {
         let planning = rates.dynamics.filter(|dynamics| dynamics.first_fault().is_none()).map(|dynamics| {
             Box::new(Planning {
                 dynamics,
-                run: CuttingRun::new(dynamics),
+                run: CuttingRun::new(dynamics, false),
                 legs: Vec::new(),
                 entries: VecDeque::new(),
                 passed_s: 0.0,
@@ -155,7 +155,7 @@ impl Planning {
             if let Some(entry) = self.entries.back_mut() {
                 entry.legs += 1;
             }
-            self.run.push(leg, order, limit);
+            self.run.push(&leg, order, limit);
         }
         if let Some(entry) = self.entries.back_mut() {
             entry.is_complete = true;

@@ -295,8 +295,9 @@ fn a_higher_override_is_never_later() {
             pace.close();
             pace.plan();
             let duration = pace.duration_s().expect("planned");
-            // Caps widen with their speed: near the start of a slow stretch half a percent may be lost.
-            assert!(duration <= last * 1.005, "{seed} {percent} {duration} after {last}");
+            // Caps widen with their speed: near the start of a slow stretch, or behind a corner that a slower path
+            // would not have noticed, a percent may be lost.
+            assert!(duration <= last * 1.01, "{seed} {percent} {duration} after {last}");
             last = duration;
         }
     }

@@ -219,6 +219,31 @@ fn the_operator_changes_the_pace_within_all_limits() {
     }
 }
 
+/// Slow cuts in short pieces with sharp corners: in a dry run they go many times faster than ordered.
+#[test]
+fn a_dry_run_of_slow_cuts_keeps_the_corners() {
+    for seed in 0..12 {
+        let mut random = Random(seed + 50);
+        let size = [3.0, 0.3, 0.03][(seed % 3) as usize];
+        let (mut x, mut z) = (30.0, 5.0);
+        let actions: Vec<_> = (0..200)
+            .map(|_| {
+                (x, z) = (x + size * random.between(-1.0, 1.0), z + size * random.between(-1.0, 0.5));
+                cut(x, z, random.between(20.0, 60.0))
+            })
+            .collect();
+        let panel = Panel { dry_run_mm_per_min: Some(6000.0), ..Panel::default() };
+        // From the first instant, and in the middle of a cut.
+        for from_s in [0.0, 0.4] {
+            let samples = played(at(30.0, 5.0), 1000.0, &actions, &[(from_s, panel)]);
+            inspect(&samples, 1000.0, &(seed, from_s));
+            let slow = played(at(30.0, 5.0), 1000.0, &actions[..20], &[]);
+            let dry = played(at(30.0, 5.0), 1000.0, &actions[..20], &[(from_s, panel)]);
+            assert!(2 * dry.len() < slow.len() + 800, "{seed} {from_s}: {} {}", dry.len(), slow.len());
+        }
+    }
+}
+
 #[test]
 fn a_hold_that_is_never_released_ends_at_rest() {
     let actions = [cut(30.0, -50.0, 2000.0), cut(40.0, -50.0, 2000.0)];

@@ -81,6 +81,7 @@ impl Span {
 /// Room for widening, used again and again.
 #[derive(Clone, Debug)]
 pub(super) struct Room {
+    wide: Vec<WideSpan>,
     forward: Vec<Span>,
     backward: Vec<Span>,
 }
@@ -88,20 +89,43 @@ pub(super) struct Room {
 impl Room {
     /// For so many caps: each is cut in two at most by those that reach on.
     pub(super) fn for_caps(caps: usize) -> Self {
-        Self { forward: Vec::with_capacity(2 * caps + 2), backward: Vec::with_capacity(2 * caps + 2) }
+        let spans = || Vec::with_capacity(2 * caps + 2);
+        Self { wide: Vec::with_capacity(caps), forward: spans(), backward: spans() }
     }
 }
 
-/// Widens spans to both sides, into `out`.
-pub(super) fn widen(
-    spans: impl DoubleEndedIterator<Item = WideSpan> + Clone,
+/// The spans of caps. A corner that is no slower than a stretch beside it changes nothing: it is left out, whoever
+/// comes between later.
+fn collect<'a>(caps: impl Iterator<Item = &'a Cap>, out: &mut Vec<WideSpan>) {
+    out.clear();
+    let mut corner: Option<WideSpan> = None;
+    let mut before = f64::INFINITY;
+    for cap in caps {
+        let wide = cap.wide_span();
+        let is_corner = cap.start_mm == cap.end_mm;
+        out.extend(corner.take().filter(|corner| is_corner || corner.span.speed < wide.span.speed));
+        if !is_corner {
+            before = wide.span.speed;
+            out.push(wide);
+        } else if wide.span.speed < before {
+            corner = Some(wide);
+        }
+    }
+    out.extend(corner);
+}
+
+/// Widens caps to both sides, into `out`.
+pub(super) fn widen<'a>(
+    caps: impl Iterator<Item = &'a Cap>,
     half_window_s: f64,
     room: &mut Room,
     out: &mut Vec<Span>,
 ) {
-    widen_forward(spans.clone(), half_window_s, &mut room.forward);
+    collect(caps, &mut room.wide);
+    let wide = room.wide.iter();
+    widen_forward(wide.clone().copied(), half_window_s, &mut room.forward);
     widen_forward(
-        spans.rev().map(|wide| WideSpan { span: wide.span.mirrored(), ..wide }),
+        wide.rev().map(|wide| WideSpan { span: wide.span.mirrored(), ..*wide }),
         half_window_s,
         &mut room.backward,
     );
@@ -209,9 +233,18 @@ mod tests {
 
     fn widened(spans: &[(f64, f64, f64)], half_window_s: f64) -> Vec<(f64, f64, f64)> {
         let (mut room, mut out) = (Room::for_caps(4), Vec::new());
-        let wide = |&(start, end, speed)| WideSpan { span: Span { start, end, speed }, width_speed: speed };
-        let spans = spans.iter().map(wide);
-        widen(spans, half_window_s, &mut room, &mut out);
+        let caps: Vec<_> = spans
+            .iter()
+            .map(|&(start_mm, end_mm, limit_mm_per_s)| Cap {
+                start_mm,
+                end_mm,
+                ordered_mm_per_s: f64::INFINITY,
+                limit_mm_per_s,
+                feedrate: Feedrate::Override(1.0),
+                width_feedrate: Feedrate::Override(1.0),
+            })
+            .collect();
+        widen(caps.iter(), half_window_s, &mut room, &mut out);
         out.iter().map(|span| (span.start, span.end, span.speed)).collect()
     }
 
@@ -243,7 +276,15 @@ mod tests {
                 at += length;
             }
             let out = widened(&spans, half_window_s);
-            for (start, end, speed) in &spans {
+            for (index, (start, end, speed)) in spans.iter().enumerate() {
+                // A corner between slower stretches is none.
+                let is_slower = |span: Option<&(f64, f64, f64)>| span.is_some_and(|span| span.2 <= *speed);
+                let is_stretch = |span: &&(f64, f64, f64)| span.0 < span.1;
+                let before = spans[..index].iter().rfind(is_stretch);
+                let behind = spans[index + 1..].iter().find(is_stretch);
+                if start == end && (is_slower(before) || is_slower(behind)) {
+                    continue;
+                }
                 let reach = speed * half_window_s;
                 for (from, to, allowed) in &out {
                     let overlaps = *from < end + reach - 1e-9 && *to > start - reach + 1e-9;

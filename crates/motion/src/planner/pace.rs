@@ -400,7 +400,7 @@ impl Pace {
     /// The spans from the front on.
     fn gather(&mut self) {
         let half = self.limits.window_s() / 2.0;
-        widen(self.caps.iter().map(Cap::wide_span), half, &mut self.room, &mut self.spans);
+        widen(self.caps.iter(), half, &mut self.room, &mut self.spans);
         let at = self.front.at_mm;
         let passed = self.spans.iter().take_while(|span| span.end <= at).count();
         self.spans.drain(..passed);
