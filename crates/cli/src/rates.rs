@@ -2,7 +2,8 @@
 
 use turnwright_control::{Machine, Parameters};
 use turnwright_motion::{
-    AccDec, AuxiliaryTimes, AxisDynamics, Dynamics, MachineRates, Orientation, RapidSurfaceSpeed, SpeedWait,
+    AccDec, Arrival, AuxiliaryTimes, AxisDynamics, Dynamics, Gear, GearSelection, Gears, MachineRates,
+    Orientation, RapidSurfaceSpeed, SpeedWait,
 };
 use turnwright_units::Rpm;
 
@@ -29,7 +30,14 @@ pub(crate) fn rates(machine: &Machine, parameters: &Parameters, stops_optionally
         speed_wait: match machine.speed_wait {
             turnwright_control::SpeedWait::Order => SpeedWait::Order,
             turnwright_control::SpeedWait::Cut => SpeedWait::Cut,
+            turnwright_control::SpeedWait::Thread => SpeedWait::Thread,
         },
+        arrival: Arrival {
+            before_cut: parameters.bit("wait-for-speed"),
+            before_thread: parameters.bit("wait-for-speed-before-thread"),
+            delay_s: parameters.value("speed-arrival-delay").max(0.0) / 1e3,
+        },
+        gears: gears(machine),
         orientation: machine.orientation_m.map(|code| Orientation { code, seconds: machine.orientation_s }),
         stop_s: machine.stop_s,
         optional_stop_s: if stops_optionally { machine.stop_s } else { 0.0 },
@@ -43,6 +51,22 @@ pub(crate) fn rates(machine: &Machine, parameters: &Parameters, stops_optionally
         },
         dynamics: Some(dynamics(machine)),
     }
+}
+
+fn gears(machine: &Machine) -> Gears {
+    let gears = machine.gears.iter().zip(machine.gear_codes()).map(|(gear, code)| Gear {
+        code,
+        rpm_min: f64::from(gear.rpm_min),
+        rpm_max: f64::from(gear.rpm_max),
+        ramp_rpm_per_s: gear.ramp_rpm_per_s.unwrap_or(machine.spindle_ramp_rpm_per_s),
+    });
+    let mut gears = Gears::new(gears);
+    gears.selection = match machine.gear_selection {
+        turnwright_control::GearSelection::MCode => GearSelection::ByCode,
+        turnwright_control::GearSelection::Speed => GearSelection::BySpeed,
+    };
+    (gears.change_s, gears.change_rpm) = (machine.gear_change_s, f64::from(machine.gear_change_rpm));
+    gears
 }
 
 fn dynamics(machine: &Machine) -> Dynamics {

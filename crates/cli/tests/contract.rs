@@ -609,3 +609,49 @@ fn every_command_has_help_with_an_example() {
     assert!(turnwright(&["man"]).out.contains(".TH turnwright"));
     assert!(turnwright(&["man", "check"]).out.contains("check"));
 }
+
+#[test]
+fn gears_of_a_setup_change_the_speed_the_ramp_and_the_time_of_the_spindle() {
+    let folder = Folder::new();
+    let program = folder.file("gears.nc", "O1\nG97 S2000 M03\nM42\nM05\nM30\n");
+    let setup = folder.file(
+        "gears.toml",
+        "control = \"fanuc-0i-tf\"\n[rates]\nauxiliary_s = 0\ngear_change_s = 1.5\n\
+         gears = [{ rpm_max = 800, ramp_rpm_per_s = 500 }, { rpm_min = 600, rpm_max = 4000 }]\n",
+    );
+    let spindle_s = |arguments: &[&str]| {
+        let ran =
+            turnwright(&[&["time", &program, "--format", "json", "--setup", &setup], arguments].concat());
+        let document: Value = serde_json::from_str(&ran.out).expect("JSON");
+        document["programs"][0]["time"]["spindle_s"].as_f64().expect("seconds")
+    };
+    // Up to 800 at 500 rpm/s 1.6; down 1.6, change 1.5, up to 2000 at 1000 rpm/s 2; to standstill 2.
+    let seconds = spindle_s(&[]);
+    assert!((seconds - 8.7).abs() < 1e-9, "{seconds}");
+    let ran = turnwright(&["check", &program, "--setup", &setup]);
+    assert!(ran.err.contains("T088"), "{}", ran.err);
+    // 3742 holds gear 2 at 1500: 1.6 + 1.6 + 1.5 + 1.5 + 1.5.
+    assert!((spindle_s(&["--param", "3742=1500"]) - 7.7).abs() < 1e-9);
+    let wrong =
+        folder.file("wrong.toml", "[rates]\ngears = [{ rpm_max = 800 }, { m = 41, rpm_max = 900 }]\n");
+    let ran = turnwright(&["time", &program, "--setup", &wrong]);
+    assert_eq!(ran.status, 2);
+    assert!(ran.err.contains("gears, number 1: each gear has an M code of its own"), "{}", ran.err);
+}
+
+#[test]
+fn cuts_wait_for_the_speed_where_the_parameter_says_so() {
+    let folder = Folder::new();
+    let program = folder.file("wait.nc", "O1\nG97 S1000 M03\nG00 X50. Z2.\nG01 Z-10. F0.2\nG00 X60.\nM30\n");
+    let setup = folder.file("wait.toml", "control = \"fanuc-0i-tf\"\n[rates]\nspeed_wait = \"thread\"\n");
+    let waited_s = |arguments: &[&str]| {
+        let arguments = [&["time", &program, "--format", "json", "--setup", &setup], arguments].concat();
+        let document: Value = serde_json::from_str(&turnwright(&arguments).out).expect("JSON");
+        document["programs"][0]["time"]["spindle_wait_s"].as_f64().expect("seconds")
+    };
+    assert_eq!(waited_s(&[]), 0.0);
+    // The rapid takes 1.6214 s, more than the ramp: the control sees the speed at once, or when 3740 is over.
+    assert_eq!(waited_s(&["--param", "3708#0=1"]), 0.0);
+    let late = waited_s(&["--param", "3708#0=1", "--param", "3740=5000"]);
+    assert!((late - (5.0 - 1.621_388_889)).abs() < 1e-6, "{late}");
+}

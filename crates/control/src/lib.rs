@@ -9,6 +9,7 @@
 mod blank;
 mod fits;
 mod functions;
+mod gears;
 mod limits;
 mod machine;
 mod materials;
@@ -31,6 +32,7 @@ use serde::Deserialize;
 
 pub use blank::Stock;
 pub use functions::{CodeSystem, FunctionEntry, Functions, Group, parse_code};
+pub use gears::{GEARS_MAX, Gear, GearSelection};
 pub use limits::Limits;
 pub use machine::{AUXILIARY_TIMES_MAX, AccDec, LinearAxis, Machine, MachineAxes, RotaryAxis, SpeedWait};
 pub use materials::{IsoGroup, Material, material, materials};

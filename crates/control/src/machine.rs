@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
+use crate::gears::{self, Gear, GearSelection};
 use crate::{Axis, AxisPair, Parameters};
 
 /// A machine: rates, times, and where its reference point lies. Units are the last part of each name.
@@ -33,6 +34,18 @@ pub struct Machine {
     /// Who waits until the spindle has its speed.
     #[serde(default)]
     pub speed_wait: SpeedWait,
+    /// Gears of the spindle, the lowest first; none: one range.
+    #[serde(default)]
+    pub gears: Vec<Gear>,
+    /// Who chooses the gear.
+    #[serde(default)]
+    pub gear_selection: GearSelection,
+    /// From the speed of changing to the new gear.
+    #[serde(default)]
+    pub gear_change_s: f64,
+    /// The spindle turns no faster while it changes.
+    #[serde(default)]
+    pub gear_change_rpm: u32,
     /// The M code that stops the spindle at an angle.
     #[serde(default)]
     pub orientation_m: Option<u32>,
@@ -77,6 +90,8 @@ pub enum SpeedWait {
     Order,
     /// The next cut.
     Cut,
+    /// Nobody but a thread, unless the control's parameter says so.
+    Thread,
 }
 
 /// The axes that a machine has beyond X and Z.
@@ -284,10 +299,16 @@ impl Machine {
         if let Some(rpm) = set("spindle-maximum-rpm") {
             self.rpm_max = rpm as u32;
         }
+        gears::limit(&mut self.gears, parameters);
         if let Some(rpm) = set("surface-speed-minimum-rpm") {
             self.rpm_min_surface = rpm as u32;
         }
         self
+    }
+
+    /// The M codes of the gears, the lowest gear first.
+    pub fn gear_codes(&self) -> impl Iterator<Item = u32> {
+        gears::codes(&self.gears)
     }
 
     /// Codes and seconds of the M codes whose time is known.
@@ -302,12 +323,16 @@ impl Machine {
             ("tool_change_s", self.tool_change_s),
             ("auxiliary_s", self.auxiliary_s),
             ("orientation_s", self.orientation_s),
+            ("gear_change_s", self.gear_change_s),
             ("stop_s", self.stop_s),
             ("loading_s", self.loading_s),
             ("bar_feed_s", self.bar_feed_s),
         ];
         if let Some((key, _)) = times.into_iter().find(|(_, seconds)| !is_time(*seconds)) {
             return Some(format!("{key}: from 0 to {DAY_S} seconds"));
+        }
+        if let Some(fault) = gears::fault(&self.gears) {
+            return Some(fault);
         }
         let count = self.auxiliary_m_s.len();
         if count > AUXILIARY_TIMES_MAX {

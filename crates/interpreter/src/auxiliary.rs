@@ -373,6 +373,7 @@ impl Auxiliary {
             }
             core.axes.machine_code(*code);
             core.emit(Action::Auxiliary { code: *code });
+            core.obey_in_gear();
             if core.settings.unbuffered.iter().any(|(first, last)| (first..=last).contains(&code)) {
                 core.sync = Some(SyncReason::MovesDone);
             }

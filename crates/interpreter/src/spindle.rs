@@ -3,14 +3,16 @@
 //! S counts turns a minute, or with constant surface speed metres (feet) a minute. Three things hold the speed
 //! down: the limit of the coordinate-setting code while the speed follows the diameter, and always the largest
 //! speed of the spindle and of the gear in use, where their parameters give one. A parameter gives the least speed of
-//! constant surface speed as well. The gear is that of the last M41 to M48, as most builders have it; gear 1 before.
+//! constant surface speed as well. The gear is that of the last M41 to M48, as most builders have it, or of the M codes
+//! that the machine file gives its gears; gear 1 before. Where the machine chooses the gear by the speed, the gear that
+//! reaches most counts.
 //!
 //! What the assumed machine cannot do is said once; the command keeps the value that the program asks for.
 //!
 //! Source: constant surface speed, its limit, and the rules of S in both modes.
 
 use turnwright_canon::{Action, SpindleSpeed, SpindleState};
-use turnwright_control::Machine;
+use turnwright_control::{GEARS_MAX, GearSelection, Machine};
 use turnwright_syntax::{Block, Word};
 use turnwright_units::{Feed, Rpm, SurfaceSpeed};
 
@@ -33,15 +35,42 @@ pub(crate) struct MachineLimits {
     feed_mm_per_min: f64,
     rpm_max: u32,
     rpm_min_surface: u32,
+    /// M code, least and largest speed of each gear.
+    gears: [Option<(u32, u32, u32)>; GEARS_MAX],
+    chooses_gear: bool,
 }
 
 impl MachineLimits {
     pub(crate) fn new(machine: &Machine) -> Self {
+        let mut gears = [None; GEARS_MAX];
+        for ((place, gear), code) in gears.iter_mut().zip(&machine.gears).zip(machine.gear_codes()) {
+            *place = Some((code, gear.rpm_min, gear.rpm_max));
+        }
         Self {
             feed_mm_per_min: machine.cutting_max_mm_per_min,
             rpm_max: machine.rpm_max,
             rpm_min_surface: machine.rpm_min_surface,
+            gears,
+            chooses_gear: machine.gear_selection == GearSelection::Speed && !machine.gears.is_empty(),
         }
+    }
+
+    /// The gear that an M code changes to, from 1, where the machine file has gears.
+    fn gear_of(&self, code: u32) -> Option<u8> {
+        let place = self.gears.iter().flatten().position(|gear| gear.0 == code)?;
+        Some(place as u8 + 1)
+    }
+
+    /// The least and the largest speed of the spindle in a gear.
+    fn rpm_range(&self, gear: u8) -> (u32, u32) {
+        let machine_max = if self.rpm_max > 0 { self.rpm_max } else { RPM_FENCE };
+        let (min, max) = if self.chooses_gear {
+            let all = self.gears.iter().flatten();
+            all.fold((RPM_FENCE, 0), |(min, max), gear| (min.min(gear.1), max.max(gear.2)))
+        } else {
+            self.gears[usize::from(gear - 1)].map_or((0, RPM_FENCE), |(_, min, max)| (min, max))
+        };
+        (min.min(machine_max), max.min(machine_max))
     }
 }
 
@@ -73,6 +102,12 @@ impl Core {
 
     /// The gear that an M code changes to.
     pub(crate) fn change_gear(&mut self, code: u32) {
+        if self.machine_limits.gears[0].is_some() {
+            if let Some(gear) = self.machine_limits.gear_of(code).filter(|_| !self.is_capturing()) {
+                self.modal.gear = gear;
+            }
+            return;
+        }
         if !GEARS.contains(&code) || self.is_capturing() {
             return;
         }
@@ -82,8 +117,22 @@ impl Core {
         }
     }
 
+    /// A spindle that turns has another limit in another gear.
+    pub(crate) fn obey_in_gear(&mut self) {
+        if self.modal.spindle != SpindleState::Stop && !self.is_capturing() {
+            self.emit_spindle();
+        }
+    }
+
     /// The largest speed by parameter, in the gear in use.
     fn rpm_by_parameter(&self) -> Option<Rpm> {
+        if self.machine_limits.chooses_gear {
+            let limits = &self.settings.gear_rpm_max[..self.machine_limits.gears.iter().flatten().count()];
+            // A gear without a limit of its own reaches whatever the spindle does.
+            let of_gears = limits.iter().copied().collect::<Option<Vec<_>>>();
+            let most = of_gears.and_then(|limits| limits.into_iter().max());
+            return [self.settings.rpm_max, most].into_iter().flatten().min();
+        }
         let of_gear = self.settings.gear_rpm_max[usize::from(self.modal.gear - 1)];
         [self.settings.rpm_max, of_gear].into_iter().flatten().min()
     }
@@ -105,12 +154,12 @@ impl Core {
                 if surface_mm_per_min == 0.0 {
                     return Rpm(0);
                 }
-                let machine = &self.machine_limits;
-                let machine_max = if machine.rpm_max > 0 { machine.rpm_max } else { RPM_FENCE };
+                let (gear_min, machine_max) = self.machine_limits.rpm_range(self.modal.gear);
+                let least = f64::from(self.machine_limits.rpm_min_surface.max(gear_min));
                 let limit = f64::from(self.rpm_limit().map_or(machine_max, |rpm| rpm.0.min(machine_max)));
                 let diameter_mm = self.modal.position.x.to_diameter().0.to_mm().abs();
                 let free = surface_mm_per_min / (std::f64::consts::PI * diameter_mm.max(1e-6));
-                Rpm(free.max(f64::from(machine.rpm_min_surface)).min(limit).round() as u32)
+                Rpm(free.max(least).min(limit).round() as u32)
             }
         }
     }
@@ -159,8 +208,9 @@ impl Core {
         match self.modal.speed_mode {
             SpeedMode::Constant => {
                 let limit = self.rpm_by_parameter().map_or(u32::MAX, |rpm| rpm.0);
-                let machine_max = self.machine_limits.rpm_max;
-                if self.modal.rpm.0 > limit || (machine_max > 0 && self.modal.rpm.0 > machine_max) {
+                let (least, most) = self.machine_limits.rpm_range(self.modal.gear);
+                let rpm = self.modal.rpm.0;
+                if rpm > limit || rpm > most || (rpm > 0 && rpm < least) {
                     self.warn_once("speed-limited");
                 }
                 if turns && self.modal.rpm.0 == 0 {

@@ -13,7 +13,7 @@ use crate::axes::AxisPlaces;
 use crate::dynamics::Dynamics;
 use crate::leg::{Place, X, Z};
 use crate::path::{ArcPath, point, stretches};
-use crate::spindle::{Order, Spindle};
+use crate::spindle::{Order, Shift, Spindle};
 use crate::surface::Slowness;
 use crate::totals::{Kind, SECONDS_MAX, Totals};
 use crate::{MachineRates, RapidSurfaceSpeed, SpeedWait};
@@ -67,6 +67,8 @@ pub struct Clock {
     spindle: Spindle,
     /// The speed of the thread in progress, rpm: a chain of threads keeps it.
     thread_rpm: Option<f64>,
+    /// What the last command began with, when it changed the gear.
+    shift: Option<Shift>,
     totals: Totals,
     unknown_feeds: u64,
 }
@@ -87,6 +89,7 @@ impl Clock {
             tool: None,
             spindle: Spindle::new(&rates),
             thread_rpm: None,
+            shift: None,
             totals: Totals::default(),
             unknown_feeds: 0,
         }
@@ -130,11 +133,36 @@ impl Clock {
         [x, z, y, rates.rapid_c_deg_per_min, rates.rapid_b_deg_per_min, x]
     }
 
+    /// What the last command began with, when it changed the gear.
+    pub(crate) const fn last_shift(&self) -> Option<Shift> {
+        self.shift
+    }
+
     /// Whether a cut from here would wait for the spindle.
     pub(crate) fn would_wait(&self) -> bool {
         let mut spindle = self.spindle;
         spindle.aim(spindle.order.rpm_at(self.position.x.to_mm()));
-        spindle.seconds_to_target() > 0.0
+        self.seconds_to_cut(&spindle) > 0.0
+    }
+
+    /// Whether cuts begin before the spindle has its speed.
+    pub(crate) const fn cuts_at_once(&self) -> bool {
+        matches!(self.rates.speed_wait, SpeedWait::Thread) && !self.rates.arrival.before_cut
+    }
+
+    /// Seconds that a cut waits for a spindle.
+    fn seconds_to_cut(&self, spindle: &Spindle) -> f64 {
+        if self.cuts_at_once() {
+            0.0
+        } else {
+            self.seconds_to_arrival(spindle, self.rates.arrival.before_cut)
+        }
+    }
+
+    /// Seconds until a spindle has its speed and, where it looks at all, the control has seen it.
+    fn seconds_to_arrival(&self, spindle: &Spindle, looks: bool) -> f64 {
+        let until_look = if looks { spindle.seconds_to_look(self.rates.arrival.delay_s) } else { 0.0 };
+        spindle.seconds_to_target().max(until_look)
     }
 
     /// In the cuts so far the spindle could not follow the diameter: it turns at `rpm`.
@@ -144,6 +172,7 @@ impl Clock {
 
     /// Measures the next command.
     pub fn advance(&mut self, command: &Command) -> Timing {
+        self.shift = None;
         let timing = match &command.action {
             Action::Rapid { to, path, others } => self.rapid(*to, *path, others.as_deref()),
             Action::Feed { to, shape, feed, others } => self.cut(*to, shape, *feed, others.as_deref()),
@@ -156,9 +185,8 @@ impl Clock {
             Action::Dwell(dwell) => self.dwell(*dwell),
             Action::Spindle { state, speed, rpm_max } => {
                 self.spindle.command(*state, *speed, *rpm_max, &self.rates);
-                self.spindle.aim(self.spindle.order.rpm_at(self.position.x.to_mm()));
-                let waits = self.rates.speed_wait == SpeedWait::Order;
-                self.still(Kind::Spindle, if waits { self.spindle.seconds_to_target() } else { 0.0 })
+                let gear = self.spindle.other_gear(&self.rates, self.position.x.to_mm());
+                self.order_speed(gear)
             }
             Action::Tool { tool, .. } => {
                 // Tool 0 cancels an offset, the turret stays; the first call turns it from where nobody knows.
@@ -203,8 +231,23 @@ impl Clock {
         timing
     }
 
-    /// An auxiliary function: the one that orients the spindle stops it first.
+    /// The spindle gets another order, or another gear in which to obey the last one.
+    fn order_speed(&mut self, gear: Option<usize>) -> Timing {
+        self.shift = gear.map(|gear| self.spindle.shift(gear, &self.rates));
+        self.spindle.aim(self.spindle.order.rpm_at(self.position.x.to_mm()));
+        let waits = self.rates.speed_wait == SpeedWait::Order;
+        let speeding_s = if waits { self.spindle.seconds_to_target() } else { 0.0 };
+        let mut timing = self.still(Kind::Spindle, speeding_s);
+        timing.seconds += self.shift.map_or(0.0, |shift| shift.seconds);
+        timing
+    }
+
+    /// An auxiliary function: the one that orients the spindle stops it first, others may change its gear.
     fn auxiliary(&mut self, code: u32) -> Timing {
+        let gear = self.rates.gears.of_code(code).filter(|gear| *gear != self.spindle.gear());
+        if gear.is_some() {
+            return self.order_speed(gear);
+        }
         match self.rates.orientation {
             Some(orientation) if orientation.code == code => {
                 self.spindle.stop();
@@ -365,7 +408,8 @@ impl Clock {
             self.speeds_along(start.x, end.x, arc.into_iter())
         };
         let rpm = turning(rpm);
-        let waited_s = self.wait_for(self.spindle.order.rpm_at(start.x));
+        self.spindle.aim(self.spindle.order.rpm_at(start.x));
+        let waited_s = self.wait(self.seconds_to_cut(&self.spindle));
         let way = self.known_minutes(minutes, length_mm);
         self.spindle.follow(self.spindle.order.rpm_at(end.x));
         Timing {
@@ -391,11 +435,16 @@ impl Clock {
         RpmRange::between(order.rpm_at(low.abs().max(high.abs())), order.rpm_at(nearest))
     }
 
-    /// Waits until the spindle turns at `rpm`, in seconds.
-    fn wait_for(&mut self, rpm: f64) -> f64 {
+    /// Waits until the spindle turns at `rpm` and, where it `looks`, the control has seen it, in seconds.
+    fn wait_for(&mut self, rpm: f64, looks: bool) -> f64 {
         self.spindle.aim(rpm);
-        let seconds = self.spindle.seconds_to_target();
+        self.wait(self.seconds_to_arrival(&self.spindle, looks))
+    }
+
+    /// Waits so many seconds for the spindle.
+    fn wait(&mut self, seconds: f64) -> f64 {
         self.spindle.run(seconds);
+        self.spindle.has_arrived();
         seconds
     }
 
@@ -422,7 +471,8 @@ impl Clock {
         let (dx_mm, dz_mm) = (way.x.to_mm().abs(), way.z.to_mm().abs());
         let rpm = self.thread_rpm.unwrap_or_else(|| self.spindle.order.rpm_at(self.position.x.to_mm()));
         self.thread_rpm = Some(rpm);
-        let waited_s = self.wait_for(rpm);
+        let arrival = self.rates.arrival;
+        let waited_s = self.wait_for(rpm, arrival.before_cut || arrival.before_thread);
         // A lead that changes evenly with the turns covers the way in as many turns as its mean does.
         let mean_lead_mm = (lead.0.to_mm() + lead_end.0.to_mm()) / 2.0;
         let length_mm = stretches(self.position, to, shape).map(|piece| piece.length_mm()).sum();
@@ -445,7 +495,7 @@ impl Clock {
             Dwell::Time(seconds) => (Some(seconds.0 / 60.0), 0.0),
             // Turns are counted at the speed that was asked for.
             Dwell::Turns(turns) if self.rates.speed_wait == SpeedWait::Cut => {
-                (minutes(turns.0, rpm), self.wait_for(rpm))
+                (minutes(turns.0, rpm), self.wait_for(rpm, false))
             }
             Dwell::Turns(turns) => (minutes(turns.0, rpm), 0.0),
         };

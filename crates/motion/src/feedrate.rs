@@ -74,6 +74,8 @@ impl Stretches {
                 while length > 2.0 * shortest && !is_even(length) {
                     length /= 2.0;
                 }
+                // While the spindle is behind, its own speed is what changes along a stretch.
+                length = length.min((feed_mm_per_rev * spindle.even_turns(start)).max(shortest));
                 let minutes_per_mm = [(0.0, 1.0), (0.5, 4.0), (1.0, 1.0)]
                     .map(|(part, weight)| weight * slowness.at(x_at(self.done_mm + length * part)))
                     .iter()
@@ -92,6 +94,14 @@ impl Stretches {
 }
 
 impl TurningSpindle {
+    /// Turns on which the speed changes by little while the spindle is on its way to `rpm`.
+    fn even_turns(&self, rpm: f64) -> f64 {
+        if self.ramp_rpm_per_s == 0.0 || self.rpm <= rpm * RATIO_MAX && rpm <= self.rpm * RATIO_MAX {
+            return f64::INFINITY;
+        }
+        self.rpm * self.rpm * (RATIO_MAX * RATIO_MAX - 1.0) / (120.0 * self.ramp_rpm_per_s)
+    }
+
     /// Follows to a speed within so many turns of its own; its mean speed when it cannot.
     fn lag(&mut self, rpm: f64, turns: f64) -> Option<f64> {
         let before = self.rpm;

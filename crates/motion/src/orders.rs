@@ -10,6 +10,7 @@ use crate::feedrate::{Order, TurningSpindle};
 use crate::leg::{B, C, Leg, LegArc, Place, V, X, Y, Z};
 use crate::path::{ArcPath, stretches};
 use crate::planner::RunLimits;
+use crate::spindle::SurfaceLaw;
 use crate::surface::Slowness;
 
 /// What a cutting move orders.
@@ -67,13 +68,18 @@ impl Clock {
         let spindle = self.spindle_order();
         let order = match (feed, spindle) {
             (Feed::PerMinute(feed), _) => Order::Speed(feed.0.to_mm() / 60.0),
+            (Feed::PerRevolution(feed), crate::spindle::Order::Constant(rpm))
+                if self.cuts_at_once() && rpm > 0.0 =>
+            {
+                // The spindle may still be on its way to this speed: the same everywhere.
+                let law = SurfaceLaw { rpm_mm: rpm, rpm_min: rpm, rpm_max: rpm };
+                self.order_along(feed.0.to_mm(), law)?
+            }
             (Feed::PerRevolution(feed), crate::spindle::Order::Constant(rpm)) => {
                 Order::Speed(feed.0.to_mm() * rpm / 60.0)
             }
             (Feed::PerRevolution(feed), crate::spindle::Order::Surface(law)) => {
-                let feed_mm_per_rev = feed.0.to_mm();
-                let slowness = Slowness::new(feed_mm_per_rev, law, self.rates().cutting_max_mm_per_min)?;
-                Order::Surface { law, feed_mm_per_rev, slowness }
+                self.order_along(feed.0.to_mm(), law)?
             }
         };
         if let Order::Speed(speed) = order
@@ -92,6 +98,12 @@ impl Clock {
             order,
             has_others: others.is_some(),
         })
+    }
+
+    /// Feed by the revolutions of a spindle whose speed changes.
+    fn order_along(&self, feed_mm_per_rev: f64, law: SurfaceLaw) -> Option<Order> {
+        let slowness = Slowness::new(feed_mm_per_rev, law, self.rates().cutting_max_mm_per_min)?;
+        Some(Order::Surface { law, feed_mm_per_rev, slowness })
     }
 
     /// The spindle as it turns now.

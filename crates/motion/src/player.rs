@@ -17,7 +17,7 @@ use crate::orders::leg_limit;
 use crate::planner::{Feedrate, Pace, RunLimits};
 use crate::run::CuttingRun;
 use crate::smoother::Smoother;
-use crate::spindle::SpindleAngle;
+use crate::spindle::{Shift, SpindleAngle};
 use crate::thread::ThreadPlan;
 use crate::thread_chain::ThreadChain;
 use crate::totals::Kind;
@@ -105,6 +105,8 @@ pub struct Player {
     smoother: Smoother,
     spindle: SpindleAngle,
     thread: ThreadChain,
+    /// The change of gear that is going on.
+    shift: Option<Shift>,
     is_stuck: bool,
 }
 
@@ -133,6 +135,7 @@ impl Player {
             smoother: Smoother::new(dynamics.corner_s, 1.0 / rate_hz),
             spindle: SpindleAngle::default(),
             thread: ThreadChain::default(),
+            shift: None,
             is_stuck: false,
         }
     }
@@ -186,10 +189,20 @@ impl Player {
             Action::Thread { .. } => self.thread.add(command, &mut self.clock, &self.dynamics),
             _ => {
                 let timing = self.clock.advance(command);
-                self.stand(timing.seconds, timing.kind, block, sink);
+                let shift_s = self.shift_gear(timing.kind, block, sink);
+                self.stand(timing.seconds - shift_s, timing.kind, block, sink);
             }
         }
         self.smoother.stand(&self.clock.place());
+    }
+
+    /// The spindle changes its gear, if the last command asked for that, before it gets its speed; the seconds it takes.
+    fn shift_gear(&mut self, kind: Kind, block: Block, sink: &mut dyn FnMut(&Sample)) -> f64 {
+        let Some(shift) = self.clock.last_shift() else { return 0.0 };
+        self.shift = Some(shift);
+        self.stand(shift.seconds, kind, block, sink);
+        self.shift = None;
+        shift.seconds
     }
 
     /// No more commands come.
@@ -227,8 +240,12 @@ impl Player {
         let aims_at_end =
             kind == Kind::Rapid && self.clock.rates().rapid_surface_speed == RapidSurfaceSpeed::AtEndPoint;
         let x_mm = if aims_at_end { self.clock.position().x.to_mm() } else { place[X] };
-        let rpm = if kind == Kind::Threading { self.spindle.rpm } else { spindle.wanted_rpm(x_mm) };
-        self.spindle.turn(rpm, spindle.ramp_rpm_per_s(), 1.0 / self.rate_hz);
+        let (rpm, ramp_rpm_per_s) = match self.shift {
+            Some(shift) => (shift.rpm, shift.ramp_rpm_per_s),
+            None if kind == Kind::Threading => (self.spindle.rpm, 0.0),
+            None => (spindle.wanted_rpm(x_mm), spindle.ramp_rpm_per_s()),
+        };
+        self.spindle.turn(rpm, ramp_rpm_per_s, 1.0 / self.rate_hz);
         sink(&Sample {
             time_s,
             place,

@@ -2,7 +2,7 @@
 
 use turnwright_units::Rpm;
 
-use crate::Dynamics;
+use crate::{Dynamics, Gears};
 
 /// Which speed constant surface speed asks for during a rapid move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -54,6 +54,20 @@ pub enum SpeedWait {
     Order,
     /// The next cut, thread or dwell in turns; what comes before it goes on while the spindle changes its speed.
     Cut,
+    /// Threads only: cuts begin while the spindle still changes its speed, and feed per revolution follows it. (Without
+    /// [`Dynamics`] that costs no time.)
+    Thread,
+}
+
+/// What the control itself makes sure of, by parameter, whoever else waits.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Arrival {
+    /// The first cut behind an order waits for the speed.
+    pub before_cut: bool,
+    /// So does the first thread.
+    pub before_thread: bool,
+    /// It looks whether the speed is reached so many seconds behind the order.
+    pub delay_s: f64,
 }
 
 /// The orientation of the spindle by an auxiliary function.
@@ -101,6 +115,10 @@ pub struct MachineRates {
     pub loading_s: f64,
     /// Who waits for the speed.
     pub speed_wait: SpeedWait,
+    /// What the control makes sure of.
+    pub arrival: Arrival,
+    /// Gears of the spindle.
+    pub gears: Gears,
     /// The function that stops the spindle at an angle, if the machine has one.
     pub orientation: Option<Orientation>,
     /// The spindle turns no faster.
@@ -131,6 +149,8 @@ impl Default for MachineRates {
             optional_stop_s: 0.0,
             loading_s: 0.0,
             speed_wait: SpeedWait::Order,
+            arrival: Arrival::default(),
+            gears: Gears::default(),
             orientation: None,
             rpm_max: Some(Rpm(4_000)),
             rpm_min_surface: 20,
@@ -156,6 +176,8 @@ impl MachineRates {
             ("cutting_max_mm_per_min", positive(self.cutting_max_mm_per_min)),
             ("tool_change_s", not_negative(self.tool_change_s)),
             ("spindle_ramp_rpm_per_s", not_negative(self.spindle_ramp_rpm_per_s)),
+            ("gears", self.gears.are_sound()),
+            ("arrival", not_negative(self.arrival.delay_s)),
             ("auxiliary_s", not_negative(self.auxiliary_s)),
             ("auxiliary_times", self.auxiliary_times.times().all(|(_, seconds)| not_negative(seconds))),
             ("orientation", self.orientation.is_none_or(|orientation| not_negative(orientation.seconds))),

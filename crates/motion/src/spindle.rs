@@ -3,7 +3,7 @@
 use turnwright_canon::{SpindleSpeed, SpindleState};
 use turnwright_units::Rpm;
 
-use crate::MachineRates;
+use crate::{GearSelection, Gears, MachineRates};
 
 /// No spindle turns faster, rpm: the limit on the axis when neither program nor machine gives one.
 pub const RPM_FENCE: f64 = 100_000.0;
@@ -32,6 +32,11 @@ impl SurfaceLaw {
         // On the axis the law asks for infinity, which the upper limit answers.
         if x_mm == 0.0 { self.rpm_max } else { (self.rpm_mm / x_mm).clamp(self.rpm_min, self.rpm_max) }
     }
+}
+
+/// A ramp that a machine has; 0 for at once.
+fn sound_ramp(rpm_per_s: f64) -> f64 {
+    if rpm_per_s.is_finite() && rpm_per_s > RAMP_MIN { rpm_per_s } else { 0.0 }
 }
 
 /// What is asked of the spindle.
@@ -86,18 +91,38 @@ pub(crate) struct Spindle {
     actual_rpm: f64,
     /// Change of speed, rpm per second; 0 for at once.
     ramp_rpm_per_s: f64,
+    /// The gear that is in.
+    gear: usize,
+    /// The last order as it was given: another gear answers it otherwise.
+    given: (SpindleState, SpindleSpeed, Option<Rpm>),
+    /// Seconds since the last order that no cut has waited for yet.
+    since_order_s: Option<f64>,
+}
+
+/// A change of gear: what the spindle does before it speeds up again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shift {
+    /// Speed of changing, rpm with its sign.
+    pub(crate) rpm: f64,
+    /// How fast the spindle gets down to it, rpm per second; 0 for at once.
+    pub(crate) ramp_rpm_per_s: f64,
+    /// Until the new gear is in, seconds.
+    pub(crate) seconds: f64,
 }
 
 impl Spindle {
     /// A standing spindle.
     pub(crate) fn new(rates: &MachineRates) -> Self {
-        let ramp = rates.spindle_ramp_rpm_per_s;
+        let ramp = rates.gears.get(0).map_or(rates.spindle_ramp_rpm_per_s, |gear| gear.ramp_rpm_per_s);
         Self {
             order: Order::Constant(0.0),
             direction: 1.0,
             target_rpm: 0.0,
             actual_rpm: 0.0,
-            ramp_rpm_per_s: if ramp.is_finite() && ramp > RAMP_MIN { ramp } else { 0.0 },
+            ramp_rpm_per_s: sound_ramp(ramp),
+            gear: 0,
+            given: (SpindleState::Stop, SpindleSpeed::Constant(Rpm(0)), None),
+            since_order_s: None,
         }
     }
 
@@ -109,15 +134,22 @@ impl Spindle {
         rpm_limit: Option<Rpm>,
         rates: &MachineRates,
     ) {
+        self.given = (state, speed, rpm_limit);
+        self.since_order_s = Some(0.0);
+        let gear = rates.gears.get(self.gear);
         let machine_max = rates.rpm_max.map_or(RPM_FENCE, |rpm| f64::from(rpm.0)).min(RPM_FENCE);
+        let machine_max = gear.map_or(machine_max, |gear| gear.rpm_max.min(machine_max).max(0.0));
+        let gear_min = gear.map_or(0.0, |gear| gear.rpm_min.min(machine_max).max(0.0));
         self.order = match (state, speed) {
-            (SpindleState::Stop, _) => Order::Constant(0.0),
-            (_, SpindleSpeed::Constant(rpm)) => Order::Constant(f64::from(rpm.0).min(machine_max)),
+            (SpindleState::Stop, _) | (_, SpindleSpeed::Constant(Rpm(0))) => Order::Constant(0.0),
+            (_, SpindleSpeed::Constant(rpm)) => {
+                Order::Constant(f64::from(rpm.0).min(machine_max).max(gear_min))
+            }
             (_, SpindleSpeed::Surface(surface)) => {
                 let rpm_mm = surface.0.to_mm() / std::f64::consts::TAU;
                 let rpm_max = rpm_limit.map_or(machine_max, |rpm| f64::from(rpm.0).min(machine_max));
                 if rpm_mm > 0.0 && rpm_max > 0.0 {
-                    let rpm_min = f64::from(rates.rpm_min_surface).min(rpm_max);
+                    let rpm_min = f64::from(rates.rpm_min_surface).max(gear_min).min(rpm_max);
                     Order::Surface(SurfaceLaw { rpm_mm, rpm_min, rpm_max })
                 } else {
                     Order::Constant(0.0)
@@ -129,6 +161,44 @@ impl Spindle {
             SpindleState::CounterClockwise => self.direction = -1.0,
             SpindleState::Stop => {}
         }
+    }
+
+    /// The gear that answers an order given at a distance from the axis (mm), where the machine chooses it: not the one
+    /// that is in.
+    pub(crate) fn other_gear(&self, rates: &MachineRates, x_mm: f64) -> Option<usize> {
+        let (state, speed, rpm_limit) = self.given;
+        if rates.gears.selection == GearSelection::ByCode || state == SpindleState::Stop {
+            return None;
+        }
+        let free = MachineRates { gears: Gears::default(), ..*rates };
+        let mut unbound = *self;
+        unbound.command(state, speed, rpm_limit, &free);
+        let wanted = unbound.order.rpm_at(x_mm);
+        rates.gears.for_speed(wanted).filter(|gear| *gear != self.gear && wanted > 0.0)
+    }
+
+    /// Changes to another gear; the order holds on as that one answers it.
+    pub(crate) fn shift(&mut self, gear: usize, rates: &MachineRates) -> Shift {
+        let ramp_rpm_per_s = self.ramp_rpm_per_s;
+        let known = |value: f64| if value.is_finite() { value.max(0.0) } else { 0.0 };
+        let (change_s, change_rpm) = (known(rates.gears.change_s), known(rates.gears.change_rpm));
+        self.target_rpm = self.actual_rpm.clamp(-change_rpm, change_rpm);
+        let slowing_s = self.seconds_to_target();
+        self.run(slowing_s);
+        let seconds = slowing_s + change_s;
+        self.since_order_s = self.since_order_s.map(|since_s| since_s + change_s);
+        (self.gear, self.ramp_rpm_per_s) =
+            (gear, sound_ramp(rates.gears.get(gear).map_or(0.0, |gear| gear.ramp_rpm_per_s)));
+        let (state, speed, rpm_limit) = self.given;
+        let since_order_s = self.since_order_s;
+        self.command(state, speed, rpm_limit, rates);
+        self.since_order_s = since_order_s;
+        Shift { rpm: self.actual_rpm, ramp_rpm_per_s, seconds }
+    }
+
+    /// The gear that is in.
+    pub(crate) const fn gear(&self) -> usize {
+        self.gear
     }
 
     /// Nothing is asked for until the next order: the spindle is held at an angle.
@@ -155,8 +225,22 @@ impl Spindle {
         if seconds.is_finite() { seconds } else { 0.0 }
     }
 
+    /// Seconds until the control looks whether the last order is fulfilled.
+    pub(crate) fn seconds_to_look(&self, delay_s: f64) -> f64 {
+        let seconds = self.since_order_s.map_or(0.0, |since_s| (delay_s - since_s).max(0.0));
+        if seconds.is_finite() { seconds } else { 0.0 }
+    }
+
+    /// Somebody has waited for the last order.
+    pub(crate) fn has_arrived(&mut self) {
+        self.since_order_s = None;
+    }
+
     /// Lets `seconds` go by.
     pub(crate) fn run(&mut self, seconds: f64) {
+        if let Some(since_s) = &mut self.since_order_s {
+            *since_s += seconds;
+        }
         if seconds >= self.seconds_to_target() {
             self.actual_rpm = self.target_rpm;
         } else {

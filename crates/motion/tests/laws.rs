@@ -8,8 +8,9 @@ use turnwright_canon::{
     SpindleSpeed, SpindleState, Turn,
 };
 use turnwright_motion::{
-    ArcPath, AuxiliaryTimes, BlockTime, BlockTimes, Clock, Dynamics, Kind, LINES_MAX, MachineRates,
-    Orientation, RapidSurfaceSpeed, SPIRAL_TOLERANCE, Schedule, SpeedWait, Summary, TIME_TOLERANCE, Timing,
+    ArcPath, Arrival, AuxiliaryTimes, BlockTime, BlockTimes, Clock, Dynamics, Gear, GearSelection, Gears,
+    Kind, LINES_MAX, MachineRates, Orientation, RapidSurfaceSpeed, SPIRAL_TOLERANCE, Schedule, SpeedWait,
+    Summary, TIME_TOLERANCE, Timing,
 };
 use turnwright_units::{
     Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position, Radius, Revolutions, Rpm, Seconds,
@@ -342,6 +343,15 @@ fn any_action(random: &mut Random) -> Action {
     }
 }
 
+/// Any gears at all, of any M codes that actions have.
+fn gears(rate: &mut impl FnMut() -> f64, round: usize) -> Gears {
+    let gear = |code| Gear { code, rpm_min: rate(), rpm_max: rate(), ramp_rpm_per_s: rate() };
+    let mut gears = Gears::new((0..round as u32 % 12).map(gear));
+    (gears.change_s, gears.change_rpm) = (rate(), rate());
+    gears.selection = if round.is_multiple_of(4) { GearSelection::BySpeed } else { GearSelection::ByCode };
+    gears
+}
+
 #[test]
 fn nothing_makes_a_time_that_is_no_number() {
     let mut random = Random(0x1dea_0006);
@@ -369,7 +379,9 @@ fn nothing_makes_a_time_that_is_no_number() {
             stop_s: rate(),
             optional_stop_s: rate(),
             loading_s: rate(),
-            speed_wait: if round % 2 == 0 { SpeedWait::Order } else { SpeedWait::Cut },
+            speed_wait: [SpeedWait::Order, SpeedWait::Cut, SpeedWait::Thread][round % 3],
+            arrival: Arrival { before_cut: round % 2 == 0, before_thread: round % 5 == 0, delay_s: rate() },
+            gears: gears(&mut rate, round),
             orientation: Some(Orientation { code: 10, seconds: rate() }).filter(|_| round % 3 == 0),
             rpm_max: None,
             rpm_min_surface: 0,
