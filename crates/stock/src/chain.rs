@@ -109,13 +109,6 @@ impl Chain {
         (low, high)
     }
 
-    /// The edge at a Z.
-    #[inline]
-    pub(crate) fn edge(&self, z: f64) -> Curve {
-        let link = self.links.iter().find(|link| z <= link.to).or(self.links.last());
-        link.map_or(Curve::level(f64::NAN), |link| link.edge)
-    }
-
     /// The same on the other side of the axis, written over another chain.
     pub(crate) fn mirror_into(&self, other: &mut Self) {
         other.restart(self.from);

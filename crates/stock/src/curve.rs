@@ -120,7 +120,12 @@ impl Curve {
     /// Lowest and highest X between two Z.
     #[inline]
     pub(crate) fn range(&self, from: f64, to: f64) -> (f64, f64) {
-        let (a, b) = (self.at(from), self.at(to));
+        self.range_with(from, to, self.at(from), self.at(to))
+    }
+
+    /// See [`Curve::range`]; X at both ends is known.
+    #[inline]
+    fn range_with(&self, from: f64, to: f64, a: f64, b: f64) -> (f64, f64) {
         let (low, high) = (lesser(a, b), greater(a, b));
         match *self {
             Self::Arc { z, x, radius } if from < z && z < to => {
@@ -212,7 +217,7 @@ impl Curve {
         let near = |a: f64, b: f64| (a - b).abs() <= WELD_MM;
         match (*self, *other) {
             (Self::Line { .. }, Self::Line { .. }) => {
-                near(self.at(from), other.at(from)) && near(self.at(to), other.at(to))
+                near(self.at(to), other.at(to)) && near(self.at(from), other.at(from))
             }
             (Self::Arc { z, x, radius }, Self::Arc { z: z2, x: x2, radius: radius2 }) => {
                 near(z, z2) && near(x, x2) && near(radius, radius2)
@@ -223,12 +228,25 @@ impl Curve {
 
     /// What lies between the edge and the axis from one Z to another: exact, by the chord and the segment of the
     /// circle over it, each turned round the axis by the path of its centroid (Pappus).
-    #[inline]
     pub(crate) fn content(&self, from: f64, to: f64) -> Content {
+        self.content_above(from, to, self.at(from), self.at(to))
+    }
+
+    /// That, and the lowest and highest X.
+    #[inline]
+    pub(crate) fn content_and_range(&self, from: f64, to: f64) -> (Content, f64, f64) {
+        let (a, b) = (self.at(from), self.at(to));
+        let (low, high) = self.range_with(from, to, a, b);
+        (self.content_above(from, to, a, b), low, high)
+    }
+
+    /// See [`Curve::content`]; X at both ends is known.
+    #[inline]
+    fn content_above(&self, from: f64, to: f64, a: f64, b: f64) -> Content {
         use std::f64::consts::PI;
-        let (a, b, wide) = (self.at(from), self.at(to), to - from);
+        let wide = to - from;
         let area = wide * (a + b) / 2.0;
-        let volume = PI * wide * (a * a + a * b + b * b) / 3.0;
+        let volume = PI / 3.0 * wide * (a * a + a * b + b * b);
         match *self {
             Self::Line { .. } => Content { area_mm2: area, volume_mm3: volume },
             Self::Arc { z, x, radius } => {
@@ -242,13 +260,18 @@ impl Curve {
     }
 }
 
-/// A stretch of Z in which edges do not cross: how two of them lie to each other is seen at two places of it. Edges that
-/// touch in between do so once, so that one of the two places tells.
+/// A stretch of Z in which edges do not cross: how two of them lie to each other is seen at a place of it. Where they are
+/// near to each other a second one is looked at: edges that touch in between do so once, so that one of the two tells.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Column {
     one: f64,
     other: f64,
 }
+
+/// Of edges further apart than this one place tells enough.
+const FAR_MM: f64 = 1e-3;
+/// But not in columns narrower than this, where steep edges may cross within the weld.
+const NARROW_MM: f64 = 1e-6;
 
 impl Column {
     #[inline]
@@ -256,16 +279,20 @@ impl Column {
         Self { one: from + (to - from) * 0.25, other: from + (to - from) * 0.75 }
     }
 
-    /// An edge at both places.
+    /// An edge at the first place.
     #[inline]
     pub(crate) fn across<'a>(&self, edge: &'a Curve) -> Across<'a> {
-        Across { edge, x: [edge.at(self.one), edge.at(self.other)] }
+        Across { edge, x: edge.at(self.one) }
     }
 
     /// How far one edge lies above another, and at which Z: above zero when it lies above.
     #[inline]
     pub(crate) fn height(&self, upper: &Across<'_>, lower: &Across<'_>) -> (f64, f64) {
-        let (one, other) = (upper.x[0] - lower.x[0], upper.x[1] - lower.x[1]);
+        let one = upper.x - lower.x;
+        if one.abs() > FAR_MM && self.other - self.one > NARROW_MM {
+            return (one, self.one);
+        }
+        let other = upper.edge.at(self.other) - lower.edge.at(self.other);
         if one.abs() > other.abs() { (one, self.one) } else { (other, self.other) }
     }
 
@@ -282,11 +309,11 @@ impl Column {
     }
 }
 
-/// An edge with its X at the two places of a column.
+/// An edge with its X at the first place of a column.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Across<'a> {
     pub(crate) edge: &'a Curve,
-    x: [f64; 2],
+    x: f64,
 }
 
 impl std::ops::Sub for Content {

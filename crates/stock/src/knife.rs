@@ -7,8 +7,9 @@
 
 use crate::WELD_MM;
 use crate::band::Band;
+use crate::chain::Link;
 use crate::curve::{Column, Curve, greater, lesser};
-use crate::removed::Removed;
+use crate::removed::Tally;
 use crate::row::{Run, Slab};
 use crate::sweep::Stencil;
 
@@ -17,15 +18,14 @@ pub(crate) struct Knife<'a> {
     stencil: &'a Stencil,
     pub(crate) from: f64,
     pub(crate) to: f64,
-    pub(crate) removed: Removed,
+    pub(crate) taken: Tally,
     stops: &'a mut Stops,
 }
 
 /// Memory for the places where a slab is parted.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stops {
-    coarse: Places,
-    fine: Places,
+    crossings: Places,
     /// See [`Knife::doubt`].
     pub(crate) doubts: Vec<(f64, f64)>,
 }
@@ -41,7 +41,7 @@ impl<'a> Knife<'a> {
     pub(crate) fn new(stencil: &'a Stencil, stops: &'a mut Stops) -> Self {
         let (from, to) = (stencil.lower.from, stencil.lower.to().min(stencil.upper.to()));
         stops.doubts.clear();
-        Self { stencil, from, to, removed: Removed::default(), stops }
+        Self { stencil, from, to, taken: Tally::default(), stops }
     }
 
     /// Between these Z, what is left is not seen to hang together; it may, further off.
@@ -70,37 +70,54 @@ impl<'a> Knife<'a> {
 
     /// Writes what is left of a slab; false when that is all of it.
     pub(crate) fn carve(&mut self, slab: &Slab, bands: &[Band], reach: Reach, left: &mut Run) -> bool {
-        let Self { stencil, stops: Stops { coarse, fine, .. }, removed, .. } = self;
-        coarse.restart(slab.from, slab.to);
-        coarse.add(self.from);
-        coarse.add(self.to);
-        if reach.lower {
-            stencil.lower.links.iter().for_each(|link| coarse.add(link.to));
-        }
-        if reach.upper {
-            stencil.upper.links.iter().for_each(|link| coarse.add(link.to));
-        }
-        let before = removed.count;
+        let Self { stencil, stops: Stops { crossings, .. }, taken, .. } = self;
+        let before = taken.count();
+        let pass_by = |left: &mut Run, from, to| {
+            bands.iter().for_each(|band| left.push_band(*band));
+            left.end_slab(from, to);
+        };
         let mut from = slab.from;
-        for &to in coarse.ends() {
-            let middle = (from + to) / 2.0;
-            if middle < self.from || middle > self.to {
-                bands.iter().for_each(|band| left.push_band(*band));
-                left.end_slab(from, to);
-            } else {
-                let lower = reach.lower.then(|| stencil.lower.edge(middle));
-                let upper = reach.upper.then(|| stencil.upper.edge(middle));
-                fine.restart(from, to);
-                for band in bands {
-                    fine.add_crossings(lower.as_ref(), band);
-                    fine.add_crossings(upper.as_ref(), band);
+        if self.from - from > WELD_MM {
+            pass_by(left, from, self.from);
+            from = self.from;
+        }
+        let end = if slab.to - self.to > WELD_MM { self.to } else { slab.to };
+        let mut lower = reach.lower.then_some(stencil.lower.links.as_slice());
+        let mut upper = reach.upper.then_some(stencil.upper.links.as_slice());
+        while from < end {
+            let mut to = end;
+            let mut edge_from = |links: &mut Option<&'a [Link]>| {
+                let link = first_behind(links.as_mut()?, from)?;
+                if end - link.to > WELD_MM {
+                    to = lesser(to, link.to);
                 }
-                carve_between(bands, lower.as_ref(), upper.as_ref(), fine, removed, left);
+                Some(&link.edge)
+            };
+            let (lower, upper) = (edge_from(&mut lower), edge_from(&mut upper));
+            crossings.restart(from, to);
+            for band in bands {
+                lower.iter().chain(&upper).for_each(|edge| crossings.add_crossings(edge, band));
             }
+            carve_between(bands, lower, upper, crossings, taken, left);
             from = to;
         }
-        removed.count > before
+        if slab.to > end {
+            pass_by(left, end, slab.to);
+        }
+        taken.count() > before
     }
+}
+
+/// The first of some links that does not end at a Z or before it, or else the last; those before it are left behind.
+#[inline]
+fn first_behind<'a>(links: &mut &'a [Link], z: f64) -> Option<&'a Link> {
+    while let [first, rest @ ..] = links
+        && !rest.is_empty()
+        && first.to <= z + WELD_MM
+    {
+        *links = rest;
+    }
+    links.first()
 }
 
 /// Writes what is left where the edges of the stencil do not change; they cross others at the given places.
@@ -109,7 +126,7 @@ fn carve_between(
     lower: Option<&Curve>,
     upper: Option<&Curve>,
     crossings: &Places,
-    removed: &mut Removed,
+    taken: &mut Tally,
     left: &mut Run,
 ) {
     let mut from = crossings.from;
@@ -125,18 +142,15 @@ fn carve_between(
                 left.push_band(*band);
                 continue;
             }
-            let mut taken = *band;
-            let bottom = lower.filter(|lower| column.rises(lower, &floor));
+            let bottom = lower.filter(|lower| column.rises(lower, &floor)).map(|lower| lower.edge);
             if let Some(edge) = bottom {
-                left.push_band(Band { floor: band.floor, roof: *edge.edge });
-                taken.floor = *edge.edge;
+                left.push_band(Band { floor: band.floor, roof: *edge });
             }
-            let top = upper.filter(|upper| column.rises(&roof, upper));
+            let top = upper.filter(|upper| column.rises(&roof, upper)).map(|upper| upper.edge);
             if let Some(edge) = top {
-                left.push_band(Band { floor: *edge.edge, roof: band.roof });
-                taken.roof = *edge.edge;
+                left.push_band(Band { floor: *edge, roof: band.roof });
             }
-            removed.add(&taken, from, to);
+            taken.add(bottom.unwrap_or(&band.floor), top.unwrap_or(&band.roof), from, to);
         }
         left.end_slab(from, to);
         from = to;
@@ -164,16 +178,18 @@ impl Places {
         if !(z - self.from > WELD_MM && self.to - z > WELD_MM) {
             return;
         }
-        let behind = self.ends.iter().position(|place| z < place + WELD_MM).unwrap_or(0);
-        // The one behind is no nearer in front of it than the weld, or it is taken for it.
-        if self.ends[behind] - z > WELD_MM {
+        // Places come nearly in order, so that the last ones are looked at first.
+        let mut behind = self.ends.len() - 1;
+        while behind > 0 && self.ends[behind - 1] > z {
+            behind -= 1;
+        }
+        let has_room = behind == 0 || z - self.ends[behind - 1] > WELD_MM;
+        if has_room && self.ends[behind] - z > WELD_MM {
             self.ends.insert(behind, z);
         }
     }
 
-    #[inline]
-    fn add_crossings(&mut self, edge: Option<&Curve>, band: &Band) {
-        let Some(edge) = edge else { return };
+    fn add_crossings(&mut self, edge: &Curve, band: &Band) {
         for other in [&band.floor, &band.roof] {
             if edge.may_meet(other, self.from, self.to) {
                 let [one, two] = edge.crossings(other);

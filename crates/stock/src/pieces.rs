@@ -6,7 +6,7 @@
 use turnwright_geometry::{Bounds, Point};
 
 use crate::band::Band;
-use crate::curve::Content;
+use crate::curve::{Content, greater, lesser};
 use crate::row::{Row, Run, Slab};
 use crate::section::Section;
 
@@ -73,7 +73,7 @@ impl Bonds {
 
 /// How much of the upright line at a Z two bands share.
 fn bond(a: &Band, b: &Band, z: f64) -> f64 {
-    a.roof.at(z).min(b.roof.at(z)) - a.floor.at(z).max(b.floor.at(z))
+    lesser(a.roof.at(z), b.roof.at(z)) - greater(a.floor.at(z), b.floor.at(z))
 }
 
 /// Whether slabs hang together as far as they go; of slabs with many bands it is not found out.
@@ -87,6 +87,12 @@ pub(crate) fn hangs_together<'a>(slabs: impl Iterator<Item = (&'a Slab, &'a [Ban
             return false;
         }
         let (last, others) = before.filter(|(last, _)| last.to == slab.from).unwrap_or((slab, &[]));
+        if let ([other], [band]) = (others, bands)
+            && bond(other, band, last.to) > BOND_MM
+        {
+            before = Some((slab, bands));
+            continue;
+        }
         let mut now = [0; BANDS_MAX];
         for (index, band) in bands.iter().enumerate() {
             next += 1;

@@ -44,13 +44,8 @@ struct Chunk {
     low: f64,
     high: f64,
     run: Run,
-}
-
-/// Memory for what a cut leaves: of the slabs that it changes in a chunk, and of one of them.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Left {
-    pub(crate) all: Run,
-    one: Run,
+    /// The first slab that the last cut looked at.
+    recent: usize,
 }
 
 /// Whether a change reached the first and the last slab of a chunk.
@@ -64,6 +59,8 @@ struct Touched {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Row {
     chunks: Vec<Chunk>,
+    /// The first chunk that the last cut looked at.
+    recent: usize,
     /// Runs that were emptied, with their memory.
     spare: Vec<Run>,
 }
@@ -118,29 +115,35 @@ impl Run {
 
     /// Adds a slab as it is.
     fn copy(&mut self, slab: &Slab, bands: &[Band]) {
-        self.bands.extend_from_slice(bands);
+        bands.iter().for_each(|band| self.bands.push(*band));
         self.push_slab(*slab);
     }
 
     /// A slab that goes on as the one before is put to it.
     #[inline]
     fn push_slab(&mut self, slab: Slab) {
-        let first = self.first_band(self.len());
-        let before = if self.slabs.is_empty() { 0 } else { self.first_band(self.len() - 1) };
-        let (before, bands) = (&self.bands[before..first], &self.bands[first..]);
-        let is_same = |(a, b): (&Band, &Band)| a.is_one_with(b, slab.from, slab.to);
-        if let Some(last) = self.slabs.last_mut()
+        let end = self.bands.len() as u32;
+        if let Some(last) = self.slabs.last()
             && last.to == slab.from
-            && before.len() == bands.len()
-            && before.iter().zip(bands).all(is_same)
+            && self.goes_on(slab.from, slab.to)
         {
-            last.to = slab.to;
-            last.low = lesser(last.low, slab.low);
-            last.high = greater(last.high, slab.high);
-            self.bands.truncate(first);
+            self.bands.truncate(last.end as usize);
+            if let Some(last) = self.slabs.last_mut() {
+                last.to = slab.to;
+                last.low = lesser(last.low, slab.low);
+                last.high = greater(last.high, slab.high);
+            }
         } else {
-            self.slabs.push(Slab { end: self.bands.len() as u32, ..slab });
+            self.slabs.push(Slab { end, ..slab });
         }
+    }
+
+    /// Whether the bands pushed since the last slab are those of it.
+    fn goes_on(&self, from: f64, to: f64) -> bool {
+        let first = self.first_band(self.len());
+        let (before, bands) = self.bands.split_at(first);
+        let before = &before[self.first_band(self.len() - 1)..];
+        before.len() == bands.len() && before.iter().zip(bands).all(|(a, b)| a.is_one_with(b, from, to))
     }
 
     fn truncate(&mut self, slabs: usize) {
@@ -156,7 +159,9 @@ impl Run {
         put(&mut self.bands, bands, &with.bands);
         put(&mut self.slabs, slabs.clone(), &with.slabs);
         self.slabs[slabs.start..behind].iter_mut().for_each(|slab| slab.end += start as u32);
-        self.slabs[behind..].iter_mut().for_each(|slab| slab.end = (i64::from(slab.end) + grown) as u32);
+        if grown != 0 {
+            self.slabs[behind..].iter_mut().for_each(|slab| slab.end = (i64::from(slab.end) + grown) as u32);
+        }
     }
 
     /// Moves the slabs from an index on to the end of another run.
@@ -183,46 +188,69 @@ fn put<T: Copy>(list: &mut Vec<T>, range: Range<usize>, items: &[T]) {
     list[range.start..range.start + items.len()].copy_from_slice(items);
 }
 
+/// How many items, the first ones, come before a place; it is looked for where the last cut was, as the next one most
+/// often is beside it.
+fn count_before<T>(items: &[T], recent: usize, is_before: impl Fn(&T) -> bool) -> usize {
+    const STEPS_MAX: usize = 4;
+    let mut count = recent.min(items.len());
+    for _ in 0..STEPS_MAX {
+        if count > 0 && !is_before(&items[count - 1]) {
+            count -= 1;
+        } else if items.get(count).is_some_and(&is_before) {
+            count += 1;
+        } else {
+            return count;
+        }
+    }
+    items.partition_point(is_before)
+}
+
 impl Chunk {
     fn new(run: Run) -> Self {
-        let mut chunk = Self { from: 0.0, to: 0.0, low: 0.0, high: 0.0, run };
+        let mut chunk = Self { from: 0.0, to: 0.0, low: 0.0, high: 0.0, run, recent: 0 };
         chunk.measure();
         chunk
     }
 
     /// See [`Row::carve`]. Slabs beside changed ones are written anew too, so that what is now the same becomes one;
     /// those further off are not touched.
-    fn carve(&mut self, knife: &mut Knife<'_>, left: &mut Left) -> Option<Touched> {
-        let Left { all, one } = left;
-        all.clear();
+    fn carve(&mut self, knife: &mut Knife<'_>, left: &mut Run) -> Option<Touched> {
         let run = &self.run;
-        let first = run.slabs.partition_point(|slab| slab.to <= knife.from + WELD_MM);
-        let mut written: Option<Range<usize>> = None;
+        let first = count_before(&run.slabs, self.recent, |slab| slab.to <= knife.from + WELD_MM);
+        self.recent = first;
+        let (mut written, mut is_changed) = (0..0, false);
         for index in first..run.len() {
             let (slab, bands) = run.slab(index);
             if slab.from >= knife.to - WELD_MM {
                 break;
             }
             let Some(reach) = knife.reach(slab.from, slab.to, slab.low, slab.high) else { continue };
-            one.clear();
-            if !knife.carve(slab, bands, reach, one) {
-                continue;
+            if !is_changed {
+                left.clear();
+                written = index.saturating_sub(1)..index.saturating_sub(1);
             }
-            let before = index.saturating_sub(1);
-            let written = written.get_or_insert(before..before);
-            (written.end..index).map(|index| run.slab(index)).for_each(|(slab, bands)| all.copy(slab, bands));
-            one.slabs().for_each(|(slab, bands)| all.copy(slab, bands));
+            (written.end..index)
+                .map(|index| run.slab(index))
+                .for_each(|(slab, bands)| left.copy(slab, bands));
+            // A slab of which nothing is taken is written as it was.
+            is_changed |= knife.carve(slab, bands, reach, left);
             written.end = index + 1;
         }
-        let mut written = written?;
+        if !is_changed {
+            return None;
+        }
         let touched = Touched { start: written.start == 0, end: written.end == run.len() };
         if !touched.end {
             let (slab, bands) = run.slab(written.end);
-            all.copy(slab, bands);
+            left.copy(slab, bands);
             written.end += 1;
         }
-        self.run.replace(written, all);
-        self.measure();
+        let was_outermost =
+            run.slabs[written.clone()].iter().any(|slab| slab.low <= self.low || slab.high >= self.high);
+        self.run.replace(written, left);
+        if was_outermost || touched.start || touched.end {
+            self.measure();
+        }
         Some(touched)
     }
 
@@ -294,21 +322,22 @@ impl Row {
                 }
             }
         }
-        knife.removed
+        knife.taken.removed()
     }
 
     /// Puts in the place of each slab what a knife leaves of it; `left` is memory for that. Where what is left is not
     /// seen to hang together, the knife is told.
-    pub(crate) fn carve(&mut self, knife: &mut Knife<'_>, left: &mut Left) {
+    pub(crate) fn carve(&mut self, knife: &mut Knife<'_>, left: &mut Run) {
         let (from, to) = (knife.from, knife.to);
-        let mut index = self.chunks.partition_point(|chunk| chunk.to <= from + WELD_MM);
+        let mut index = count_before(&self.chunks, self.recent, |chunk| chunk.to <= from + WELD_MM);
+        self.recent = index;
         let mut emptied: Option<usize> = None;
         while let Some(chunk) = self.chunks.get_mut(index).filter(|chunk| chunk.from < to - WELD_MM) {
             if knife.reach(chunk.from, chunk.to, chunk.low, chunk.high).is_some()
                 && let Some(touched) = chunk.carve(knife, left)
             {
                 let is_empty = chunk.run.len() == 0;
-                self.look_round(index, touched, &left.all, knife);
+                self.look_round(index, touched, left, knife);
                 if is_empty {
                     emptied.get_or_insert(index);
                 } else if self.chunks[index].run.len() > CHUNK_SLABS_MAX {

@@ -8,7 +8,7 @@ use crate::cutter::Cutter;
 use crate::decompose::slabs_of;
 use crate::knife::{Knife, Stops};
 use crate::removed::{Contact, Removed};
-use crate::row::{Left, Row, Run};
+use crate::row::{Row, Run};
 use crate::sweep::{Stencil, Sweep};
 
 /// The material of a turned part in the half-plane above its axis.
@@ -16,7 +16,7 @@ use crate::sweep::{Stencil, Sweep};
 pub struct Section {
     pub(crate) row: Row,
     /// Memory that every cut uses.
-    left: Left,
+    left: Run,
     stops: Stops,
     mirrored: Stencil,
 }
@@ -42,10 +42,10 @@ impl Section {
         }
         let mut section = Self::default();
         for slab in slabs_of(outline) {
-            slab.bands.iter().for_each(|band| section.left.all.push_band(*band));
-            section.left.all.end_slab(slab.from, slab.to);
+            slab.bands.iter().for_each(|band| section.left.push_band(*band));
+            section.left.end_slab(slab.from, slab.to);
         }
-        section.row.append(&mut section.left.all);
+        section.row.append(&mut section.left);
         Ok(section)
     }
 
@@ -105,7 +105,7 @@ impl Section {
     fn cut_stencil(&mut self, stencil: &Stencil) -> Removed {
         let mut knife = Knife::new(stencil, &mut self.stops);
         self.row.carve(&mut knife, &mut self.left);
-        let mut removed = knife.removed;
+        let mut removed = knife.taken.removed();
         let ends = self.stops.doubts.iter().copied().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         removed.may_part = ends.is_some_and(|(from, to)| !self.row.holds_together(from, to));
         removed
