@@ -12,7 +12,7 @@ use turnwright_units::{Feed, Lead, Position, WorkTip};
 use crate::axes::AxisPlaces;
 use crate::dynamics::Dynamics;
 use crate::leg::{Place, X, Z};
-use crate::path::{ArcPath, point, stretches};
+use crate::path::{ArcPath, CutPath, stretches};
 use crate::spindle::{Order, Shift, Spindle};
 use crate::surface::Slowness;
 use crate::totals::{Kind, SECONDS_MAX, Totals};
@@ -172,10 +172,22 @@ impl Clock {
 
     /// Measures the next command.
     pub fn advance(&mut self, command: &Command) -> Timing {
+        let path = match &command.action {
+            Action::Feed { to, shape, .. } => Some(CutPath::new(self.position, *to, shape)),
+            _ => None,
+        };
+        self.advance_along(command, path)
+    }
+
+    /// As [`Clock::advance`], with the way of a cutting move, which has been measured already.
+    pub(crate) fn advance_along(&mut self, command: &Command, path: Option<CutPath>) -> Timing {
         self.shift = None;
         let timing = match &command.action {
             Action::Rapid { to, path, others } => self.rapid(*to, *path, others.as_deref()),
-            Action::Feed { to, shape, feed, others } => self.cut(*to, shape, *feed, others.as_deref()),
+            Action::Feed { to, shape, feed, others } => {
+                let path = path.unwrap_or_else(|| CutPath::new(self.position, *to, shape));
+                self.cut(*to, shape, *feed, others.as_deref(), &path)
+            }
             Action::Thread { to, shape, lead, lead_end, is_chained, .. } => {
                 if !is_chained {
                     self.thread_rpm = None;
@@ -366,21 +378,11 @@ impl Clock {
         shape: &Shape,
         feed: Feed,
         others: Option<&OtherAxes>,
+        path: &CutPath,
     ) -> Timing {
-        let (start, end) = (point(self.position), point(to));
-        let arc = match shape {
-            // Of an arc across the section X is taken to change evenly; it matters to the spindle only.
-            Shape::Line | Shape::SideArc { .. } | Shape::Curve(_) => None,
-            Shape::Arc { turn, centre } => Some(ArcPath::new(self.position, to, *centre, *turn)),
-        };
-        // An ellipse or a parabola is measured as arcs.
-        let is_curve = matches!(shape, Shape::Curve(_));
+        // Of an arc across the section X is taken to change evenly; it matters to the spindle only.
+        let &CutPath { start, end, arc, is_curve, length_mm } = path;
         let pieces = || stretches(self.position, to, shape);
-        let length_mm = match arc {
-            None if is_curve => pieces().map(|piece| piece.length_mm()).sum(),
-            None => libm::hypot(end.x - start.x, end.z - start.z),
-            Some(arc) => arc.length_mm(),
-        };
         let axes =
             others.map(|others| self.axes.cut(self.position, to, shape, length_mm, others, &self.rates));
         let (length_mm, feed_mm) =

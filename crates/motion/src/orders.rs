@@ -8,7 +8,7 @@ use crate::Dynamics;
 use crate::clock::Clock;
 use crate::feedrate::{Order, TurningSpindle};
 use crate::leg::{B, C, Leg, LegArc, Place, V, X, Y, Z};
-use crate::path::{ArcPath, stretches};
+use crate::path::{ArcPath, CutPath, stretches};
 use crate::planner::RunLimits;
 use crate::spindle::SurfaceLaw;
 use crate::surface::Slowness;
@@ -18,11 +18,11 @@ pub(crate) struct CutOrder<'a> {
     from: Position<WorkTip>,
     to: Position<WorkTip>,
     shape: &'a Shape,
-    start: Place,
+    pub(crate) start: Place,
     end: Place,
-    /// Feed is measured along so many mm for each of the path in the section.
-    feed_per_mm: f64,
-    path_mm: f64,
+    pub(crate) path: CutPath,
+    /// What feed is measured along, mm.
+    feed_mm: f64,
     pub(crate) order: Order,
     /// Axes beyond X and Z move along.
     pub(crate) has_others: bool,
@@ -36,9 +36,12 @@ impl Clock {
         place
     }
 
-    /// Where all axes are at the end of a move.
-    pub(crate) fn place_after(&self, to: Position<WorkTip>, others: Option<&OtherAxes>) -> Place {
-        let mut place = self.place();
+    /// Where all axes are at the end of a move from `place`.
+    pub(crate) fn place_after(
+        mut place: Place,
+        to: Position<WorkTip>,
+        others: Option<&OtherAxes>,
+    ) -> Place {
         (place[X], place[Z]) = (to.x.to_mm(), to.z.to_mm());
         if let Some(others) = others {
             let set = |place: &mut f64, value: Option<f64>| *place = value.unwrap_or(*place);
@@ -57,10 +60,10 @@ impl Clock {
     pub(crate) fn cut_order<'a>(&self, action: &'a Action) -> Option<CutOrder<'a>> {
         let Action::Feed { to, shape, feed, others } = action else { return None };
         let (from, to, others) = (self.position(), *to, others.as_deref());
-        let path_mm: f64 = stretches(from, to, shape).map(|piece| piece.length_mm()).sum();
+        let path = CutPath::new(from, to, shape);
         let feed_mm = match others {
-            None => path_mm,
-            Some(others) => self.axes().cut(from, to, shape, path_mm, others, self.rates()).feed_mm,
+            None => path.length_mm,
+            Some(others) => self.axes().cut(from, to, shape, path.length_mm, others, self.rates()).feed_mm,
         };
         if feed_mm <= 0.0 || !feed_mm.is_finite() {
             return None;
@@ -87,17 +90,9 @@ impl Clock {
         {
             return None;
         }
-        Some(CutOrder {
-            from,
-            to,
-            shape,
-            start: self.place(),
-            end: self.place_after(to, others),
-            feed_per_mm: if path_mm > 0.0 { feed_mm / path_mm } else { 1.0 },
-            path_mm: if path_mm > 0.0 { path_mm } else { feed_mm },
-            order,
-            has_others: others.is_some(),
-        })
+        let start = self.place();
+        let end = Self::place_after(start, to, others);
+        Some(CutOrder { from, to, shape, start, end, path, feed_mm, order, has_others: others.is_some() })
     }
 
     /// Feed by the revolutions of a spindle whose speed changes.
@@ -113,24 +108,29 @@ impl Clock {
 }
 
 impl CutOrder<'_> {
-    /// The legs, one behind the other.
-    pub(crate) fn legs(&self) -> impl Iterator<Item = Leg> {
-        let Self { start, end, path_mm, feed_per_mm, .. } = *self;
-        let is_curve = matches!(self.shape, Shape::Curve(_));
-        let side_arc = self.side_arc();
+    /// Adds the legs, one behind the other.
+    pub(crate) fn add_legs(&self, legs: &mut Vec<Leg>) {
+        let Self { start, end, path, feed_mm, .. } = *self;
+        if !path.is_curve {
+            let arc = path.arc.map(|path| LegArc { axes: [Z, X], path }).or_else(|| self.side_arc());
+            legs.push(Leg { from: start, to: end, arc, length_mm: feed_mm });
+            return;
+        }
+        let feed_per_mm = feed_mm / path.length_mm;
         let mut done_mm = 0.0;
         let mut from = start;
-        stretches(self.from, self.to, self.shape).map(move |piece| {
-            let length_mm = if is_curve { piece.length_mm() } else { path_mm };
+        for piece in stretches(self.from, self.to, self.shape) {
+            let length_mm = piece.length_mm();
             done_mm += length_mm;
-            let part = if is_curve { (done_mm / path_mm).min(1.0) } else { 1.0 };
+            let part = (done_mm / path.length_mm).min(1.0);
             let mut to: Place = std::array::from_fn(|axis| start[axis] + (end[axis] - start[axis]) * part);
             (to[X], to[Z]) = (piece.end.x, piece.end.z);
-            let arc = piece.arc.map(|path| LegArc { axes: [Z, X], path }).or(side_arc);
-            let leg = Leg { from, to, arc, length_mm: length_mm * feed_per_mm };
+            let arc = piece.arc.map(|path| LegArc { axes: [Z, X], path });
+            if length_mm > 0.0 {
+                legs.push(Leg { from, to, arc, length_mm: length_mm * feed_per_mm });
+            }
             from = to;
-            leg
-        })
+        }
     }
 
     /// An arc in a plane of the side axis.
@@ -166,22 +166,23 @@ pub(crate) fn leg_limit(leg: &Leg, clock: &Clock, dynamics: &Dynamics, along: Ru
         rates.rapid_x_mm_per_min,
     ];
     let in_arc = |axis: usize| leg.arc.is_some_and(|arc| arc.axes.contains(&axis));
-    let mut limit = f64::INFINITY;
+    let per_mm = 1.0 / leg.length_mm;
+    // Minutes that a millimetre takes at least.
+    let mut slowness = 0.0f64;
     let mut turning = 0.0f64;
     for (axis, rate) in per_minute.into_iter().enumerate() {
-        let share = if in_arc(axis) { 1.0 } else { (leg.to[axis] - leg.from[axis]).abs() / leg.length_mm };
+        let share = if in_arc(axis) { 1.0 } else { (leg.to[axis] - leg.from[axis]).abs() * per_mm };
         if share > 0.0 {
-            limit = limit.min(rate / 60.0 / share);
-        }
-        if matches!(axis, C | B) {
-            turning = turning.max(share);
+            slowness = slowness.max(share / rate);
+            if matches!(axis, C | B) {
+                turning = turning.max(share);
+            }
         }
     }
     // Degrees are no way in millimetres: the largest feed holds for the rest.
-    let moving = (1.0 - turning * turning).max(0.0).sqrt();
-    if moving > 0.0 {
-        limit = limit.min(rates.cutting_max_mm_per_min / 60.0 / moving);
-    }
+    let moving = if turning > 0.0 { (1.0 - turning * turning).max(0.0).sqrt() } else { 1.0 };
+    slowness = slowness.max(moving / rates.cutting_max_mm_per_min);
+    let limit = 1.0 / (60.0 * slowness);
     match (leg.arc, leg.radius_mm()) {
         (Some(arc), Some(radius_mm)) => limit.min(dynamics.arc_speed(arc.axes, radius_mm, along)),
         _ => limit,

@@ -47,8 +47,8 @@ impl ArcPath {
     pub(crate) fn between(start: Point, end: Point, centre: Point, clockwise: bool) -> Self {
         Self {
             centre,
-            start_radius_mm: libm::hypot(start.x - centre.x, start.z - centre.z),
-            end_radius_mm: libm::hypot(end.x - centre.x, end.z - centre.z),
+            start_radius_mm: way_mm(start.x - centre.x, start.z - centre.z),
+            end_radius_mm: way_mm(end.x - centre.x, end.z - centre.z),
             start_rad: libm::atan2(start.x - centre.x, start.z - centre.z),
             sweep_rad: sweep_rad(start, end, centre, clockwise),
         }
@@ -98,6 +98,10 @@ impl ArcPath {
 
     /// Length of the path, mm.
     pub fn length_mm(&self) -> f64 {
+        if self.pieces() == 1 {
+            let growth_mm = self.end_radius_mm - self.start_radius_mm;
+            return way_mm(self.radius_at(0.5) * self.sweep_rad, growth_mm);
+        }
         self.circles().map(|circle| circle.path_mm_per_rad * circle.sweep_rad.abs()).sum()
     }
 
@@ -130,7 +134,42 @@ pub(crate) struct Stretch {
 impl Stretch {
     pub(crate) fn length_mm(&self) -> f64 {
         let (start, end) = (self.start, self.end);
-        self.arc.map_or_else(|| libm::hypot(end.x - start.x, end.z - start.z), |arc| arc.length_mm())
+        self.arc.map_or_else(|| way_mm(end.x - start.x, end.z - start.z), |arc| arc.length_mm())
+    }
+}
+
+/// Length of a way in two directions, mm. Ways of programs are far from the sizes at which squares would overflow.
+pub(crate) fn way_mm(x_mm: f64, z_mm: f64) -> f64 {
+    (x_mm * x_mm + z_mm * z_mm).sqrt()
+}
+
+/// The way of a cutting move in the section, measured once.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CutPath {
+    pub(crate) start: Point,
+    pub(crate) end: Point,
+    pub(crate) arc: Option<ArcPath>,
+    /// An ellipse or a parabola: measured as arcs.
+    pub(crate) is_curve: bool,
+    pub(crate) length_mm: f64,
+}
+
+impl CutPath {
+    pub(crate) fn new(from: Position<WorkTip>, to: Position<WorkTip>, shape: &Shape) -> Self {
+        let (start, end) = (point(from), point(to));
+        let straight_mm = way_mm(end.x - start.x, end.z - start.z);
+        let (arc, is_curve, length_mm) = match shape {
+            // Of an arc across the section the path sees the chord.
+            Shape::Line | Shape::SideArc { .. } => (None, false, straight_mm),
+            Shape::Arc { turn, centre } => {
+                let arc = ArcPath::between(start, end, point(*centre), *turn == Turn::Clockwise);
+                (Some(arc), false, arc.length_mm())
+            }
+            Shape::Curve(_) => {
+                (None, true, stretches(from, to, shape).map(|piece| piece.length_mm()).sum())
+            }
+        };
+        Self { start, end, arc, is_curve, length_mm }
     }
 }
 

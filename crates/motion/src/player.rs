@@ -12,7 +12,7 @@ use turnwright_canon::{Action, Command, OtherAxes, PathMode, RapidPath};
 use turnwright_units::{Position, WorkTip};
 
 use crate::clock::Clock;
-use crate::leg::{Place, X, Z};
+use crate::leg::{Leg, Place, X, Z};
 use crate::orders::leg_limit;
 use crate::planner::{Feedrate, Pace, RunLimits};
 use crate::run::CuttingRun;
@@ -98,6 +98,8 @@ pub struct Player {
     panel: Panel,
     changes: VecDeque<(f64, Panel)>,
     run: CuttingRun,
+    /// The legs of the command that is being taken up.
+    legs: Vec<Leg>,
     has_others: bool,
     mode: PathMode,
     blocks: VecDeque<Block>,
@@ -128,6 +130,7 @@ impl Player {
             panel: Panel::default(),
             changes: VecDeque::new(),
             run: CuttingRun::new(dynamics, true),
+            legs: Vec::new(),
             has_others: false,
             mode: PathMode::Continuous,
             blocks: VecDeque::new(),
@@ -279,14 +282,12 @@ impl Player {
             self.smoother.stand(&self.clock.place());
             return;
         };
-        let before = self.clock.turning_spindle();
-        let mut after = self.clock.clone();
-        let timing = after.advance(command);
         if !self.run.is_open() {
-            self.stand(timing.waited_s, Kind::Spindle, block, sink);
+            let waited_s = self.clock.clone().advance_along(command, Some(order.path)).waited_s;
+            self.stand(waited_s, Kind::Spindle, block, sink);
             self.has_others = order.has_others;
-            let mut spindle = before;
-            if timing.waited_s > 0.0 || before.ramp_rpm_per_s == 0.0 {
+            let mut spindle = self.clock.turning_spindle();
+            if waited_s > 0.0 || spindle.ramp_rpm_per_s == 0.0 {
                 spindle.rpm = self.clock.spindle_order().rpm_at(self.clock.position().x.to_mm());
             }
             self.smoother.stand(&self.clock.place());
@@ -294,15 +295,19 @@ impl Player {
             self.run.begin(self.dynamics.cutting(self.has_others), spindle);
             self.run.pace.preset(feedrate, is_held);
         }
-        for leg in order.legs().filter(|leg| leg.length_mm > 0.0) {
+        let mut legs = std::mem::take(&mut self.legs);
+        legs.clear();
+        order.add_legs(&mut legs);
+        for leg in &legs {
             while !self.run.has_room() && !self.is_stuck {
                 self.play_run(sink);
             }
-            let limit = leg_limit(&leg, &self.clock, &self.dynamics, self.run.pace.limits());
-            self.run.push(&leg, order.order, limit);
+            let limit = leg_limit(leg, &self.clock, &self.dynamics, self.run.pace.limits());
+            self.run.push(leg, order.order, limit);
             self.blocks.push_back(block);
         }
-        self.clock = after;
+        self.legs = legs;
+        self.clock.advance_along(command, Some(order.path));
     }
 
     /// Plays what is final of the run; whether it is over.
@@ -329,7 +334,7 @@ impl Player {
                 return true;
             }
             let (place, state) = self.run.at(time_s);
-            let passed = self.run.forget_before(time_s);
+            let passed = self.run.forget_before(time_s, state.at_mm);
             self.blocks.drain(..passed.min(self.blocks.len().saturating_sub(1)));
             let place = self.smoother.next(&place);
             let block = self.blocks.front().copied().unwrap_or(Block { source: 0, line: 0 });
@@ -358,7 +363,7 @@ impl Player {
         block: Block,
         sink: &mut dyn FnMut(&Sample),
     ) {
-        let (from, end) = (self.clock.place(), self.clock.place_after(to, others));
+        let (from, end) = (self.clock.place(), Clock::place_after(self.clock.place(), to, others));
         let rates = self.clock.rapid_rates();
         let way: Place = std::array::from_fn(|axis| end[axis] - from[axis]);
         let is_straight = path == RapidPath::Straight;

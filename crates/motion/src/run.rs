@@ -16,19 +16,16 @@ use crate::planner::{Pace, PathState, RunLimits};
 /// Legs known at once: the look-ahead.
 pub const LEGS_MAX: usize = 2048;
 
-/// A leg that has been taken up, and where it ends.
-#[derive(Clone, Copy, Debug)]
-struct Placed {
-    leg: Leg,
-    end_mm: f64,
-}
-
 /// A chain of legs.
 #[derive(Clone, Debug)]
 pub(crate) struct CuttingRun {
     dynamics: Dynamics,
     pub(crate) pace: Pace,
-    legs: VecDeque<Placed>,
+    /// Where each leg that has been taken up ends, mm along the path.
+    ends_mm: VecDeque<f64>,
+    /// The legs themselves, when anybody asks for places.
+    legs: Option<VecDeque<Leg>>,
+    last: Option<Leg>,
     end_mm: f64,
     corners: Corners,
     /// What is left of the last leg.
@@ -40,14 +37,16 @@ pub(crate) struct CuttingRun {
 }
 
 impl CuttingRun {
-    /// For legs that nobody, or an operator, comes between.
-    pub(crate) fn new(dynamics: Dynamics, has_operator: bool) -> Self {
+    /// To be played, with an operator who may come between, or for its times only.
+    pub(crate) fn new(dynamics: Dynamics, is_played: bool) -> Self {
         Self {
             dynamics,
             pace: Pace::with_capacity(2 * LEGS_MAX, dynamics.cutting(false)),
-            legs: VecDeque::with_capacity(LEGS_MAX),
+            ends_mm: VecDeque::with_capacity(LEGS_MAX),
+            legs: is_played.then(|| VecDeque::with_capacity(LEGS_MAX)),
+            last: None,
             end_mm: 0.0,
-            corners: Corners::new(&dynamics, has_operator),
+            corners: Corners::new(&dynamics, is_played),
             current: None,
             spindle: TurningSpindle { rpm: 0.0, ramp_rpm_per_s: 0.0 },
             is_over: true,
@@ -58,7 +57,8 @@ impl CuttingRun {
     /// Begins a chain at rest.
     pub(crate) fn begin(&mut self, limits: RunLimits, spindle: TurningSpindle) {
         self.pace.begin(limits);
-        self.legs.clear();
+        self.ends_mm.clear();
+        self.legs.iter_mut().for_each(VecDeque::clear);
         self.corners.clear();
         (self.end_mm, self.current, self.spindle, self.is_over) = (0.0, None, spindle, false);
     }
@@ -70,13 +70,15 @@ impl CuttingRun {
 
     /// Whether another leg can be taken up. If not, play or take what is planned, and [`CuttingRun::plan`].
     pub(crate) fn has_room(&self) -> bool {
-        self.current.is_none() && self.legs.len() < LEGS_MAX
+        self.current.is_none() && self.ends_mm.len() < LEGS_MAX
     }
 
     /// Takes up a leg, when there is room.
     pub(crate) fn push(&mut self, leg: &Leg, order: Order, limit_mm_per_s: f64) {
         self.end_mm += leg.length_mm;
-        self.legs.push_back(Placed { leg: *leg, end_mm: self.end_mm });
+        self.ends_mm.push_back(self.end_mm);
+        self.legs.iter_mut().for_each(|legs| legs.push_back(*leg));
+        self.last = Some(*leg);
         self.corners.turn_into(leg);
         self.current = Some(Stretches::new(order, limit_mm_per_s));
         self.feed();
@@ -96,11 +98,11 @@ impl CuttingRun {
 
     /// Takes stretches as far as there is room.
     fn feed(&mut self) {
-        while let (Some(stretches), Some(last)) = (&mut self.current, self.legs.back()) {
+        while let (Some(stretches), Some(last)) = (&mut self.current, &self.last) {
             if self.corners.pour(&mut self.pace, false).is_err() && !self.corners.has_room() {
                 return;
             }
-            match stretches.next(&last.leg, &mut self.spindle) {
+            match stretches.next(last, &mut self.spindle) {
                 Some((length, speed)) => self.corners.add(length, speed, stretches.limit_mm_per_s),
                 None => self.current = None,
             }
@@ -116,9 +118,9 @@ impl CuttingRun {
             if poured && is_over {
                 self.pace.close();
             }
-            if self.legs.len() == LEGS_MAX {
+            if self.ends_mm.len() == LEGS_MAX {
                 // Legs so short that all of them together are no look-ahead: the nearer half goes on.
-                self.pace.plan_until(self.legs[LEGS_MAX / 2].end_mm);
+                self.pace.plan_until(self.ends_mm[LEGS_MAX / 2]);
             } else {
                 self.pace.plan();
             }
@@ -131,31 +133,38 @@ impl CuttingRun {
     /// Place and speed at a time.
     pub(crate) fn at(&self, time_s: f64) -> (Place, PathState) {
         let state = self.pace.at(time_s);
-        let place = match self.legs.iter().find(|placed| placed.end_mm >= state.at_mm) {
-            Some(Placed { leg, end_mm }) => {
+        let leg = self.ends_mm.iter().position(|end_mm| *end_mm >= state.at_mm);
+        let place = match leg.and_then(|index| Some((self.legs.as_ref()?.get(index)?, self.ends_mm[index]))) {
+            Some((leg, end_mm)) => {
                 leg.place(((state.at_mm - (end_mm - leg.length_mm)) / leg.length_mm).max(0.0))
             }
-            None => self.legs.back().map_or([0.0; 6], |placed| placed.leg.to),
+            None => self.last.map_or([0.0; 6], |last| last.to),
         };
         (place, state)
     }
 
-    /// Forgets what is over at a time; how many legs that are.
-    pub(crate) fn forget_before(&mut self, time_s: f64) -> usize {
+    /// Forgets what is over at a time, when the tool is at a place; how many legs that are.
+    pub(crate) fn forget_before(&mut self, time_s: f64, at_mm: f64) -> usize {
         self.pace.forget_before(time_s);
-        let at_mm = self.pace.at(time_s).at_mm;
-        let before = self.legs.len();
-        while self.legs.len() > 1 && self.legs[0].end_mm < at_mm {
-            self.legs.pop_front();
+        let before = self.ends_mm.len();
+        while self.ends_mm.len() > 1 && self.ends_mm[0] < at_mm {
+            self.forget_leg();
         }
-        before - self.legs.len()
+        before - self.ends_mm.len()
+    }
+
+    fn forget_leg(&mut self) {
+        self.ends_mm.pop_front();
+        if let Some(legs) = &mut self.legs {
+            legs.pop_front();
+        }
     }
 
     /// The time at which the next leg is over, when that is known, before averaging: half a window later the tool is
     /// there. For clocks; who plays uses [`CuttingRun::at`].
     pub(crate) fn take_end(&mut self) -> Option<f64> {
-        let end_mm = self.legs.front()?.end_mm;
-        let is_last = self.is_over && self.legs.len() == 1;
+        let end_mm = *self.ends_mm.front()?;
+        let is_last = self.is_over && self.ends_mm.len() == 1;
         let time_s = if is_last {
             self.duration_s()?
         } else if self.pace.planned_mm() >= end_mm {
@@ -163,7 +172,7 @@ impl CuttingRun {
         } else {
             return None;
         };
-        self.legs.pop_front();
+        self.forget_leg();
         Some(time_s)
     }
 }

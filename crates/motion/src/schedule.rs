@@ -16,7 +16,7 @@ use crate::orders::leg_limit;
 use crate::run::{CuttingRun, LEGS_MAX};
 use crate::{Dynamics, ESTIMATES, ESTIMATES_WITH_DYNAMICS, MachineRates};
 
-/// A command in the run that is being planned.
+/// A command, known or in the run that is being planned.
 #[derive(Debug)]
 struct Entry {
     command: Command,
@@ -32,8 +32,27 @@ struct Entry {
 pub struct Schedule {
     clock: Clock,
     planning: Option<Box<Planning>>,
-    /// Commands whose time is known.
-    known: VecDeque<(Command, Timing)>,
+    entries: Entries,
+}
+
+/// Commands that have come in and not gone out yet.
+#[derive(Debug, Default)]
+struct Entries {
+    list: VecDeque<Entry>,
+    /// So many of the first ones have a time that is known.
+    known: usize,
+}
+
+impl Entries {
+    fn add_known(&mut self, command: Command, timing: Timing) {
+        debug_assert_eq!(self.known, self.list.len());
+        self.list.push_back(Entry { command, timing, legs: 0, is_complete: true });
+        self.known += 1;
+    }
+
+    fn unknown_count(&self) -> usize {
+        self.list.len() - self.known
+    }
 }
 
 /// The run in progress.
@@ -43,7 +62,6 @@ struct Planning {
     run: CuttingRun,
     /// The legs of the command that is being taken up.
     legs: Vec<Leg>,
-    entries: VecDeque<Entry>,
     /// When the last leg that is over was.
     passed_s: f64,
     mode: PathMode,
@@ -58,13 +76,12 @@ impl Schedule {
                 dynamics,
                 run: CuttingRun::new(dynamics, false),
                 legs: Vec::new(),
-                entries: VecDeque::new(),
                 passed_s: 0.0,
                 mode: PathMode::Continuous,
                 has_others: false,
             })
         });
-        Self { clock: Clock::new(start, rates), planning, known: VecDeque::new() }
+        Self { clock: Clock::new(start, rates), planning, entries: Entries::default() }
     }
 
     /// Commands whose time is unknown because nothing would turn or move.
@@ -81,7 +98,7 @@ impl Schedule {
     pub fn push(&mut self, command: Command) {
         let Some(planning) = &mut self.planning else {
             let timing = self.clock.advance(&command);
-            self.known.push_back((command, timing));
+            self.entries.add_known(command, timing);
             return;
         };
         if let Action::PathMode(mode) = &command.action {
@@ -95,46 +112,48 @@ impl Schedule {
                     && !self.clock.would_wait()
             }
             Action::PathMode(_) | Action::Message(_) | Action::Output(_) => {
-                planning.run.is_open() && planning.entries.len() < 2 * LEGS_MAX
+                planning.run.is_open() && self.entries.unknown_count() < 2 * LEGS_MAX
             }
             _ => false,
         };
         if !goes_on {
-            planning.end_run(&mut self.clock, &mut self.known);
+            planning.end_run(&mut self.clock, &mut self.entries);
         }
-        planning.add(command, &mut self.clock, &mut self.known);
+        planning.add(command, &mut self.clock, &mut self.entries);
     }
 
     /// No more commands come: all times are known.
     pub fn finish(&mut self) {
         if let Some(planning) = &mut self.planning {
-            planning.end_run(&mut self.clock, &mut self.known);
+            planning.end_run(&mut self.clock, &mut self.entries);
         }
     }
 
     /// The next command whose time is known, with it.
     pub fn next_known(&mut self) -> Option<(Command, Timing)> {
-        self.known.pop_front()
+        self.entries.known = self.entries.known.checked_sub(1)?;
+        self.entries.list.pop_front().map(|entry| (entry.command, entry.timing))
     }
 }
 
 impl Planning {
-    fn add(&mut self, command: Command, clock: &mut Clock, known: &mut VecDeque<(Command, Timing)>) {
+    fn add(&mut self, command: Command, clock: &mut Clock, entries: &mut Entries) {
         let Some(cut) = clock.cut_order(&command.action) else {
             let timing = clock.advance(&command);
             if self.run.is_open() {
-                self.entries.push_back(Entry { command, timing, legs: 0, is_complete: true });
+                entries.list.push_back(Entry { command, timing, legs: 0, is_complete: true });
             } else {
-                known.push_back((command, timing));
+                entries.add_known(command, timing);
             }
             return;
         };
         let (order, has_others) = (cut.order, cut.has_others);
         self.legs.clear();
-        self.legs.extend(cut.legs().filter(|leg| leg.length_mm > 0.0));
+        cut.add_legs(&mut self.legs);
+        let path = cut.path;
         let mut spindle = clock.turning_spindle();
         let wanted_rpm = clock.spindle_order().rpm_at(clock.position().x.to_mm());
-        let timing = clock.advance(&command);
+        let timing = clock.advance_along(&command, Some(path));
         if !self.run.is_open() {
             self.has_others = has_others;
             if timing.waited_s > 0.0 || spindle.ramp_rpm_per_s == 0.0 {
@@ -144,27 +163,27 @@ impl Planning {
             self.passed_s = 0.0;
         }
         let waiting = Timing { seconds: timing.waited_s, ..timing };
-        self.entries.push_back(Entry { timing: waiting, command, legs: 0, is_complete: false });
-        for index in 0..self.legs.len() {
-            let leg = self.legs[index];
+        entries.list.push_back(Entry { timing: waiting, command, legs: 0, is_complete: false });
+        for leg in 0..self.legs.len() {
             while !self.run.has_room() {
                 self.run.plan();
-                self.take(known);
+                self.take(entries);
             }
-            let limit = leg_limit(&leg, clock, &self.dynamics, self.run.pace.limits());
-            if let Some(entry) = self.entries.back_mut() {
+            let leg = &self.legs[leg];
+            let limit = leg_limit(leg, clock, &self.dynamics, self.run.pace.limits());
+            if let Some(entry) = entries.list.back_mut() {
                 entry.legs += 1;
             }
-            self.run.push(&leg, order, limit);
+            self.run.push(leg, order, limit);
         }
-        if let Some(entry) = self.entries.back_mut() {
+        if let Some(entry) = entries.list.back_mut() {
             entry.is_complete = true;
         }
     }
 
     /// Takes the times that are known.
-    fn take(&mut self, known: &mut VecDeque<(Command, Timing)>) {
-        while let Some(entry) = self.entries.front_mut() {
+    fn take(&mut self, entries: &mut Entries) {
+        while let Some(entry) = entries.list.get_mut(entries.known) {
             while entry.legs > 0 {
                 let Some(end_s) = self.run.take_end() else { return };
                 entry.timing.seconds += end_s - self.passed_s;
@@ -174,21 +193,19 @@ impl Planning {
             if !entry.is_complete {
                 return;
             }
-            if let Some(Entry { command, timing, .. }) = self.entries.pop_front() {
-                known.push_back((command, timing));
-            }
+            entries.known += 1;
         }
     }
 
     /// Comes to rest.
-    fn end_run(&mut self, clock: &mut Clock, known: &mut VecDeque<(Command, Timing)>) {
+    fn end_run(&mut self, clock: &mut Clock, entries: &mut Entries) {
         if !self.run.is_open() {
             return;
         }
         self.run.close(self.mode);
-        while !self.entries.is_empty() {
+        while entries.unknown_count() > 0 {
             self.run.plan();
-            self.take(known);
+            self.take(entries);
         }
         clock.lag_behind(self.run.spindle.rpm);
     }

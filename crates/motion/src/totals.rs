@@ -69,6 +69,9 @@ pub(crate) const SECONDS_MAX: f64 = 1e12;
 
 /// Seconds as a time in whole nanoseconds; what is no time is none.
 pub(crate) fn duration(seconds: f64) -> Duration {
+    if seconds == 0.0 {
+        return Duration::ZERO;
+    }
     let counted = if seconds > SECONDS_MAX { SECONDS_MAX } else { seconds };
     Duration::try_from_secs_f64(counted).unwrap_or_default()
 }
