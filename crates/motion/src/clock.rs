@@ -176,10 +176,12 @@ impl Clock {
             Action::Feed { to, shape, .. } => Some(CutPath::new(self.position, *to, shape)),
             _ => None,
         };
-        self.advance_along(command, path)
+        let timing = self.advance_along(command, path);
+        self.totals.add(&timing);
+        timing
     }
 
-    /// As [`Clock::advance`], with the way of a cutting move, which has been measured already.
+    /// As [`Clock::advance`], but for the sums, with the way of a cutting move that has been measured already.
     pub(crate) fn advance_along(&mut self, command: &Command, path: Option<CutPath>) -> Timing {
         self.shift = None;
         let timing = match &command.action {
@@ -239,7 +241,6 @@ impl Clock {
         if let Some(others) = command.action.others() {
             self.axes.follow(others);
         }
-        self.totals.add(&timing);
         timing
     }
 

@@ -49,13 +49,15 @@ impl Stretches {
         Self { order, limit_mm_per_s, done_mm: 0.0 }
     }
 
-    /// Length and ordered speed of the next stretch of the leg; `None` when all of it has been given.
-    pub(crate) fn next(&mut self, leg: &Leg, spindle: &mut TurningSpindle) -> Option<(f64, f64)> {
+    /// Whether the whole leg has been given.
+    pub(crate) fn is_done(&self, leg: &Leg) -> bool {
+        self.done_mm >= leg.length_mm
+    }
+
+    /// Length and ordered speed of the next stretch of the leg.
+    pub(crate) fn next(&mut self, leg: &Leg, spindle: &mut TurningSpindle) -> (f64, f64) {
         let rest_mm = leg.length_mm - self.done_mm;
-        if self.done_mm >= leg.length_mm {
-            return None;
-        }
-        Some(match self.order {
+        match self.order {
             Order::Speed(speed) => {
                 self.done_mm = leg.length_mm;
                 (rest_mm, speed)
@@ -89,7 +91,7 @@ impl Stretches {
                 self.done_mm = if length == rest_mm { leg.length_mm } else { self.done_mm + length };
                 (length, speed)
             }
-        })
+        }
     }
 }
 

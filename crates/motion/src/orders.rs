@@ -37,11 +37,7 @@ impl Clock {
     }
 
     /// Where all axes are at the end of a move from `place`.
-    pub(crate) fn place_after(
-        mut place: Place,
-        to: Position<WorkTip>,
-        others: Option<&OtherAxes>,
-    ) -> Place {
+    pub(crate) fn place_after(mut place: Place, to: Position<WorkTip>, others: Option<&OtherAxes>) -> Place {
         (place[X], place[Z]) = (to.x.to_mm(), to.z.to_mm());
         if let Some(others) = others {
             let set = |place: &mut f64, value: Option<f64>| *place = value.unwrap_or(*place);

@@ -165,9 +165,7 @@ impl CutPath {
                 let arc = ArcPath::between(start, end, point(*centre), *turn == Turn::Clockwise);
                 (Some(arc), false, arc.length_mm())
             }
-            Shape::Curve(_) => {
-                (None, true, stretches(from, to, shape).map(|piece| piece.length_mm()).sum())
-            }
+            Shape::Curve(_) => (None, true, stretches(from, to, shape).map(|piece| piece.length_mm()).sum()),
         };
         Self { start, end, arc, is_curve, length_mm }
     }

@@ -102,9 +102,10 @@ impl CuttingRun {
             if self.corners.pour(&mut self.pace, false).is_err() && !self.corners.has_room() {
                 return;
             }
-            match stretches.next(last, &mut self.spindle) {
-                Some((length, speed)) => self.corners.add(length, speed, stretches.limit_mm_per_s),
-                None => self.current = None,
+            let (length, speed) = stretches.next(last, &mut self.spindle);
+            self.corners.add(length, speed, stretches.limit_mm_per_s);
+            if stretches.is_done(last) {
+                self.current = None;
             }
         }
     }

@@ -192,6 +192,39 @@ fn the_same_bits_whatever_the_chunks_and_run_after_run() {
 }
 
 #[test]
+fn a_way_of_one_speed_has_the_same_bits_whatever_the_chunks() {
+    for seed in 0..2000 {
+        let mut random = Random(seed + 3);
+        let acceleration = random.size(200.0, 8000.0);
+        let limits = RunLimits {
+            acceleration_mm_per_s2: acceleration,
+            jerk_mm_per_s3: acceleration / random.size(0.004, 0.12),
+        };
+        let (way, speed) = (random.size(1e-3, 500.0), random.size(0.5, 400.0));
+        // Once at once, and once with a corner in it that holds nobody up: that goes through all passes.
+        let planned = |pieces: &[(f64, f64)]| {
+            let mut pace = Pace::with_capacity(8, limits);
+            for (length, limit) in pieces {
+                pace.push(*length, f64::INFINITY, *limit).expect("room");
+            }
+            pace.close();
+            pace.plan();
+            let duration = pace.duration_s().expect("planned");
+            let places = (0..=20).map(|tick| pace.at(duration * f64::from(tick) / 20.0).at_mm.to_bits());
+            (duration.to_bits(), places.collect::<Vec<_>>())
+        };
+        let whole = planned(&[(way, speed)]);
+        assert_eq!(whole, planned(&[(way, speed), (0.0, 1e9)]), "{limits:?} {way} {speed}");
+        // Chunk by chunk.
+        let case = Case { limits, pieces: vec![(way, speed, speed)] };
+        let step = f64::from_bits(whole.0) / 100.0;
+        let at_once = played(&case, || 1, step, 8);
+        let parts = Case { limits, pieces: vec![(way / 2.0, speed, speed); 2] };
+        assert!(at_once == played(&parts, || 1, step, 8), "{limits:?} {way} {speed}");
+    }
+}
+
+#[test]
 fn little_room_is_slower_but_safe() {
     for seed in 0..100 {
         let mut random = Random(seed + 1);

@@ -9,7 +9,7 @@
 use std::collections::VecDeque;
 
 use super::caps::{Cap, Feedrate, Room, SPEED_MIN_MM_PER_S, Span, widen};
-use super::peaks::flatten;
+use super::peaks::{flatten, hill};
 use super::phases::{PathState, Phase, Phases};
 use super::reach::{Knot, backward, brake, forward, is_too_fast};
 
@@ -349,6 +349,9 @@ impl Pace {
             if self.front.at_mm >= self.end_mm || self.is_held && self.front.square == 0.0 {
                 return;
             }
+            if self.is_closed && self.caps.len() == 1 && self.phases.is_empty() && self.front.at_mm == 0.0 {
+                return self.plan_hill();
+            }
             if self.front.square == 0.0 && self.front.is_interrupted && !self.wait() {
                 return;
             }
@@ -356,6 +359,17 @@ impl Pace {
                 return;
             }
         }
+    }
+
+    /// Plans a path of one speed from rest to rest: what the passes of [`Pace::plan_once`] would come to, bit for bit.
+    fn plan_hill(&mut self) {
+        let Some(cap) = self.caps.front() else { return };
+        let growth = 2.0 * self.limits.acceleration_mm_per_s2;
+        let [left, right] = hill(self.end_mm, cap.wide_span().span.speed, growth, self.limits.window_s());
+        for knot in [left, right, Knot::new(self.end_mm, 0.0)] {
+            self.add_knot(knot);
+        }
+        self.front.is_interrupted = false;
     }
 
     /// Lets the rest of a window go by at rest.

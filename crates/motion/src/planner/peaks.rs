@@ -37,7 +37,7 @@ fn lower(out: &mut Vec<Knot>, valley: usize, head_mm: f64, down: Knot, growth: f
         let head = if first == valley { head_mm } else { 0.0 };
         let span = right.at - out[first].at + head;
         let needed = |square: f64| window_s * square.sqrt() * (1.0 - SLACK);
-        if span >= needed(right.square) || first == valley {
+        if first == valley || span >= needed(right.square) {
             out.push(down);
             return true;
         }
@@ -46,11 +46,7 @@ fn lower(out: &mut Vec<Knot>, valley: usize, head_mm: f64, down: Knot, growth: f
         let low = below.square.max(down.square);
         // Each flank gives way / growth per square, so the top broadens by twice that.
         if span + 2.0 * (right.square - low) / growth >= needed(low) {
-            // x² + growth·T·x/2 = square + growth·span/2, x the speed at which the top lasts for the window.
-            let half = growth * window_s / 4.0;
-            let sum = right.square + growth * span / 2.0;
-            let speed = sum / (half + (half * half + sum).sqrt());
-            let square = (speed * speed).clamp(low, right.square);
+            let square = broad_top(right.square, span, growth, window_s).clamp(low, right.square);
             let way = (right.square - square) / growth;
             out.push(Knot { at: left.at - way, square, is_lowered: true });
             out.push(Knot::new(right.at + way, square));
@@ -66,4 +62,27 @@ fn lower(out: &mut Vec<Knot>, valley: usize, head_mm: f64, down: Knot, growth: f
         }
         out.push(Knot { at: right.at + (right.square - low) / growth, square: low, is_lowered: true });
     }
+}
+
+/// The square of the speed at which a top between two flanks lasts for the window, when `span` of it has `square`.
+fn broad_top(square: f64, span: f64, growth: f64, window_s: f64) -> f64 {
+    // x² + growth·T·x/2 = square + growth·span/2.
+    let half = growth * window_s / 4.0;
+    let sum = square + growth * span / 2.0;
+    let speed = sum / (half + (half * half + sum).sqrt());
+    speed * speed
+}
+
+/// The ends of the top on a path of one speed from rest to rest.
+pub(super) fn hill(length: f64, speed: f64, growth: f64, window_s: f64) -> [Knot; 2] {
+    let top = (growth * length / 2.0).min(speed * speed);
+    let flank = top / growth;
+    let (left, right) = (Knot::new(flank, top), Knot::new((length - flank).max(flank), top));
+    let span = right.at - left.at;
+    if span >= window_s * top.sqrt() * (1.0 - SLACK) {
+        return [left, right];
+    }
+    let square = broad_top(top, span, growth, window_s).clamp(0.0, top);
+    let way = (top - square) / growth;
+    [Knot { at: left.at - way, square, is_lowered: true }, Knot::new(right.at + way, square)]
 }

@@ -81,6 +81,10 @@ impl Phases {
         self.ends_mm = [0.0; 2];
     }
 
+    pub(crate) fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
     pub(crate) fn is_full(&self) -> bool {
         self.list.len() == self.capacity
     }
