@@ -1,42 +1,48 @@
-//! Makes constants of the tables of `data/`, and lists the files of `data/controls` and `data/machines`, so that
-//! adding a control or a machine is adding a file and nothing else.
+//! Makes constants of the tables and controls of `data/`, and lists the files of `data/machines`, so that adding a
+//! control or a machine is adding a file and nothing else.
 #![allow(clippy::disallowed_methods, clippy::disallowed_macros, reason = "a build script reads files")]
 
+mod controls;
 mod tables;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use tables::{Entry, constant};
 
 fn main() {
     let data = Path::new(&env::var("CARGO_MANIFEST_DIR").expect("cargo sets it")).join("../../data");
-    let mut source = String::new();
-    for (folder, constant) in [("controls", "CONTROLS"), ("machines", "MACHINES")] {
-        let folder = data.join(folder);
-        println!("cargo::rerun-if-changed={}", folder.display());
-        let mut files: Vec<_> = fs::read_dir(&folder)
-            .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
-            .map(|entry| entry.expect("a directory entry").path())
-            .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
-            .collect();
-        files.sort();
-        source.push_str(&format!("pub(crate) const {constant}: &[(&str, &str)] = &[\n"));
-        for file in files {
-            let name = file.file_stem().expect("a file name").to_string_lossy().into_owned();
-            let path = fs::canonicalize(&file).expect("an existing file");
-            source.push_str(&format!("    ({name:?}, include_str!({:?})),\n", path.display().to_string()));
-        }
-        source.push_str("];\n");
+    let mut machines = "pub(crate) const MACHINES: &[(&str, &str)] = &[\n".to_string();
+    for file in files(&data.join("machines")) {
+        let name = file.file_stem().expect("a file name").to_string_lossy().into_owned();
+        let path = fs::canonicalize(&file).expect("an existing file");
+        machines.push_str(&format!("    ({name:?}, include_str!({:?})),\n", path.display().to_string()));
     }
+    machines.push_str("];\n");
+    let questions = tables::read(&data.join("policies.toml"));
+    let controls = controls::files(&files(&data.join("controls")));
     let out = env::var("OUT_DIR").expect("cargo sets it");
     let write = |name: &str, source: String| {
         fs::write(Path::new(&out).join(name), source).expect("the build folder is writable");
     };
-    write("embedded.rs", source);
+    write("machines.rs", machines);
+    write("policies.rs", controls::policies(&questions));
+    write("controls.rs", controls::controls(&questions, &controls));
     write("functions.rs", constant(&data.join("functions.toml"), "ENTRIES", "FunctionEntry", function));
     write("messages.rs", constant(&data.join("alarms.toml"), "ENTRIES", "Entry", message));
     write("parameters.rs", constant(&data.join("parameters.toml"), "TABLE", "Parameter", parameter));
+}
+
+/// The TOML files of a folder, sorted.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    println!("cargo::rerun-if-changed={}", folder.display());
+    let mut files: Vec<_> = fs::read_dir(folder)
+        .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
+        .map(|entry| entry.expect("a directory entry").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .collect();
+    files.sort();
+    files
 }
 
 fn function(entry: &mut Entry) -> String {

@@ -68,9 +68,7 @@ impl Entry {
     pub(crate) fn optional_variant(&mut self, key: &str, r#enum: &str) -> String {
         let Some(value) = self.table.remove(key) else { return "None".to_string() };
         let word = self.expect(key, "is no text", value.as_str());
-        let pascal: String =
-            word.split('-').map(|part| part[..1].to_ascii_uppercase() + &part[1..]).collect();
-        format!("Some({}::{pascal})", r#enum)
+        format!("Some({}::{})", r#enum, pascal(word))
     }
 
     /// A table of texts, as pairs sorted by key.
@@ -97,8 +95,21 @@ impl Entry {
     }
 }
 
-fn literal(value: impl Debug) -> String {
+pub(crate) fn literal(value: impl Debug) -> String {
     format!("{value:?}")
+}
+
+/// `machine-file` as a type is spelled: `MachineFile`.
+pub(crate) fn pascal(word: &str) -> String {
+    let parts = word.split('-').filter(|part| !part.is_empty());
+    parts.map(|part| part[..1].to_ascii_uppercase() + &part[1..]).collect()
+}
+
+/// The table that a file holds; the build looks at it again when it changes.
+pub(crate) fn read(file: &Path) -> Table {
+    println!("cargo::rerun-if-changed={}", file.display());
+    let text = fs::read_to_string(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    text.parse().unwrap_or_else(|error| panic!("{}: {error}", file.display()))
 }
 
 /// The source of `const NAME: &[(&str, TYPE)]` with what `expression` makes of each entry of a file.
@@ -108,10 +119,7 @@ pub(crate) fn constant(
     r#type: &str,
     expression: fn(&mut Entry) -> String,
 ) -> String {
-    println!("cargo::rerun-if-changed={}", file.display());
-    let text = fs::read_to_string(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
-    let table: Table = text.parse().unwrap_or_else(|error| panic!("{}: {error}", file.display()));
-    let mut names: Vec<_> = table.into_iter().collect();
+    let mut names: Vec<_> = read(file).into_iter().collect();
     names.sort_by(|a, b| a.0.cmp(&b.0));
     let mut source = format!("pub(crate) const {name}: &[(&str, {})] = &[\n", r#type);
     for (name, value) in names {

@@ -28,7 +28,6 @@ mod tooling;
 mod workholding;
 
 use policy::{AlarmIds, Policies};
-use serde::Deserialize;
 
 pub use blank::Stock;
 pub use functions::{CodeSystem, FunctionEntry, Functions, Group, parse_code};
@@ -53,9 +52,16 @@ pub use suggest::nearest;
 pub use tooling::{CuttingTurn, Flank, Hand, InsertFacing, Tool, ToolEntry, ToolKind, ToolPost, ToolSide};
 pub use workholding::{Bar, BarEnd, Chuck, ChuckOutlines, Grip, GripLaw, Tailstock};
 
-pub(crate) mod embedded {
-    //! Made by the build script.
-    include!(concat!(env!("OUT_DIR"), "/embedded.rs"));
+mod machine_files {
+    //! Made of `data/machines` by the build script.
+    include!(concat!(env!("OUT_DIR"), "/machines.rs"));
+}
+
+mod definitions {
+    //! Made of `data/controls` by the build script.
+    use crate::policy::*;
+    use crate::{Definition, Limits};
+    include!(concat!(env!("OUT_DIR"), "/controls.rs"));
 }
 
 /// The control used when neither program nor user names one.
@@ -73,9 +79,9 @@ pub struct Control {
     /// Whose functions it has: its own name when the code table says something about it, else its base's.
     pub code_table: &'static str,
     /// Its name, as people write it.
-    pub title: String,
+    pub title: &'static str,
     /// One line about it, English and Chinese.
-    pub summary: [String; 2],
+    pub summary: [&'static str; 2],
     /// Its answers to the questions on which controls differ.
     pub policies: Policies,
     /// Its limits.
@@ -84,7 +90,23 @@ pub struct Control {
     pub alarm_ids: AlarmIds,
     /// Its parameters and their present values.
     pub parameters: Parameters,
-    words_for_later: std::collections::BTreeMap<String, String>,
+    words_for_later: &'static [(&'static str, &'static str)],
+}
+
+/// A control as `data/controls` has it, with what its bases say.
+struct Definition {
+    name: &'static str,
+    /// Its name and those of its bases, nearest first.
+    lineage: &'static [&'static str],
+    title: &'static str,
+    summary: [&'static str; 2],
+    parameter_map: &'static str,
+    alarm_ids: AlarmIds,
+    policies: Policies,
+    limits: Limits,
+    /// Its own values of parameters.
+    parameters: &'static [(&'static str, f64)],
+    words_for_later: &'static [(&'static str, &'static str)],
 }
 
 /// Why no control could be loaded.
@@ -101,39 +123,9 @@ pub enum ControlFault {
     Data(String),
 }
 
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
-struct File {
-    #[serde(default)]
-    r#abstract: bool,
-    base: Option<String>,
-    title: Option<String>,
-    summary: Option<Words>,
-    parameter_map: Option<String>,
-    alarm_ids: Option<AlarmIds>,
-    #[serde(default)]
-    policies: toml::Table,
-    #[serde(default)]
-    limits: toml::Table,
-    #[serde(default)]
-    parameters: toml::Table,
-    #[serde(default)]
-    words_for_later: toml::Table,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-struct Words {
-    en: String,
-    zh: String,
-}
-
 /// Names of all controls, sorted.
 pub fn control_names() -> Vec<&'static str> {
-    embedded::CONTROLS
-        .iter()
-        .filter(|(_, text)| !toml::from_str::<File>(text).is_ok_and(|file| file.r#abstract))
-        .map(|(name, _)| *name)
-        .collect()
+    definitions::CONTROLS.iter().map(|definition| definition.name).collect()
 }
 
 impl Control {
@@ -143,58 +135,25 @@ impl Control {
     /// [`ControlFault::Unknown`] with the nearest name.
     pub fn load(name: &str) -> Result<Self, ControlFault> {
         let wanted = name.trim().to_ascii_lowercase().replace(['_', ' '], "-");
-        let found = embedded::CONTROLS.iter().find(|(known, _)| *known == wanted);
-        let Some((name, text)) = found else { return Err(unknown(name)) };
-        Self::define(name, text)
-    }
-
-    /// A control from the text of its definition.
-    fn define(name: &'static str, text: &str) -> Result<Self, ControlFault> {
-        let mut file = read(name, text)?;
-        if file.r#abstract {
-            return Err(unknown(name));
-        }
-        let mut lineage = vec![name];
-        let summary = file.summary.take();
-        // Nearest first: what is said nearer wins.
-        let mut base = file.base.clone();
-        let mut steps = 0;
-        while let Some(name) = base {
-            steps += 1;
-            let above = embedded::CONTROLS.iter().find(|(known, _)| *known == name && steps < 10);
-            let Some((name, text)) = above else {
-                return Err(ControlFault::Data(format!("base {name} does not exist")));
-            };
-            let above = read(name, text)?;
-            lineage.push(*name);
-            file.parameter_map = file.parameter_map.or(above.parameter_map);
-            file.alarm_ids = file.alarm_ids.or(above.alarm_ids);
-            for (own, from) in [
-                (&mut file.policies, above.policies),
-                (&mut file.limits, above.limits),
-                (&mut file.parameters, above.parameters),
-                (&mut file.words_for_later, above.words_for_later),
-            ] {
-                for (key, value) in from {
-                    own.entry(key).or_insert(value);
-                }
-            }
-            base = above.base;
-        }
-        let fault = |error: toml::de::Error| ControlFault::Data(format!("{name}: {error}"));
-        let summary = summary.map_or_else(Default::default, |words| [words.en, words.zh]);
-        let map = file.parameter_map.unwrap_or_default();
-        let code_table = lineage.into_iter().find(|name| Functions.knows(name)).unwrap_or(name);
+        let found = definitions::CONTROLS.iter().find(|definition| definition.name == wanted);
+        let Some(definition) = found else {
+            let nearest = nearest(name, control_names());
+            return Err(ControlFault::Unknown { name: name.to_string(), nearest });
+        };
+        let &Definition {
+            name, lineage, title, summary, policies, limits, alarm_ids, words_for_later, ..
+        } = definition;
+        let parameters = Parameters::load(definition.parameter_map, definition.parameters);
         Ok(Self {
             name,
-            code_table,
-            title: file.title.unwrap_or_else(|| (*name).to_string()),
+            code_table: lineage.iter().find(|name| Functions.knows(name)).unwrap_or(&name),
+            title,
             summary,
-            policies: file.policies.try_into().map_err(fault)?,
-            limits: file.limits.try_into().map_err(fault)?,
-            words_for_later: file.words_for_later.try_into().map_err(fault)?,
-            alarm_ids: file.alarm_ids.unwrap_or(AlarmIds::Four),
-            parameters: Parameters::load(&map, &file.parameters).map_err(ControlFault::Data)?,
+            policies,
+            limits,
+            words_for_later,
+            alarm_ids,
+            parameters: parameters.map_err(ControlFault::Data)?,
         })
     }
 }
@@ -202,16 +161,9 @@ impl Control {
 impl Control {
     /// Letters that a function takes on this control and that are not executed yet: they are refused by name.
     pub fn words_for_later(&self, function: &str) -> &str {
-        self.words_for_later.get(function).map_or("", String::as_str)
+        let found = self.words_for_later.iter().find(|(name, _)| *name == function);
+        found.map_or("", |(_, letters)| letters)
     }
-}
-
-fn read(name: &str, text: &str) -> Result<File, ControlFault> {
-    toml::from_str(text).map_err(|error| ControlFault::Data(format!("{name}: {error}")))
-}
-
-fn unknown(name: &str) -> ControlFault {
-    ControlFault::Unknown { name: name.to_string(), nearest: nearest(name, control_names()) }
 }
 
 #[cfg(test)]
@@ -239,19 +191,15 @@ mod tests {
     }
 
     #[test]
-    fn adding_a_control_is_one_file() {
-        let text = "base = \"fanuc-0i-tf\"\ntitle = \"Our lathe\"\n[policies]\nescape-speed = \"rapid\"\n";
-        let ours = Control::define("our-lathe", text).expect("a definition");
-        let base = Control::load("fanuc-0i-tf").expect("a control");
-        assert_eq!(ours.policies.escape_speed, policy::EscapeSpeed::Rapid);
-        assert_eq!(ours.policies.arc_end_error, base.policies.arc_end_error);
-        let codes = |control: &Control| -> Vec<&str> {
-            let table = Functions.iter();
-            table.filter(|(_, entry)| entry.is_on(control.code_table)).map(|(name, _)| name).collect()
-        };
-        assert_eq!(codes(&ours), codes(&base));
-        assert!(codes(&base).len() > 50);
-        assert!(matches!(Control::define("our-lathe", "base = \"none\""), Err(ControlFault::Data(_))));
+    fn a_control_has_what_its_bases_say() {
+        let (own, base) = (Control::load("fanuc-0i-tf"), Control::load("fanuc-0i-td"));
+        let (own, base) = (own.expect("a control"), base.expect("a control"));
+        assert_eq!(own.policies.arc_end_error, base.policies.arc_end_error);
+        assert_ne!(own.policies.program_names, base.policies.program_names);
+        assert_eq!((own.limits.program_digits, base.limits.program_digits), (8, 4));
+        assert_eq!(own.limits.sequence_digits, base.limits.sequence_digits);
+        // What is only a base of controls is none.
+        assert!(matches!(Control::load("base"), Err(ControlFault::Unknown { .. })));
     }
 
     #[test]

@@ -1,10 +1,7 @@
 //! The limits of a control: numbers that its data states, each with an alarm of its own.
 
-use serde::Deserialize;
-
 /// Limits of a control, each with an alarm of its own.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Axes that a cut moves together. From memory; options of some machines allow more.
     pub simultaneous_axes_max: u8,

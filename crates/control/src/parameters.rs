@@ -170,7 +170,7 @@ pub struct UnderNumber {
 /// The parameters of one control and their present values.
 #[derive(Clone, Debug)]
 pub struct Parameters {
-    map: String,
+    map: &'static str,
     /// In the order of the table; one that does not go by axes has its value in every place.
     values: Vec<[f64; Axis::ALL.len()]>,
     /// Names of those that were set, to whatever value.
@@ -186,17 +186,16 @@ fn place(name: &str) -> Option<usize> {
 
 impl Parameters {
     /// The defaults of a parameter map, with a control's own values over them.
-    pub(crate) fn load(map: &str, own: &toml::Table) -> Result<Self, String> {
+    pub(crate) fn load(map: &'static str, own: &[(&str, f64)]) -> Result<Self, String> {
         let mut values: Vec<_> =
             TABLE.iter().map(|(_, parameter)| [parameter.default; Axis::ALL.len()]).collect();
         for (name, value) in own {
-            let value = value.as_integer().map(|n| n as f64).or(value.as_float());
-            match (place(name), value) {
-                (Some(place), Some(value)) => values[place].fill(value),
-                _ => return Err(format!("parameter {name} is unknown or has no number")),
+            match place(name) {
+                Some(place) => values[place].fill(*value),
+                None => return Err(format!("parameter {name} is unknown")),
             }
         }
-        Ok(Self { map: map.to_string(), values, stated: BTreeSet::new(), stated_others: BTreeSet::new() })
+        Ok(Self { map, values, stated: BTreeSet::new(), stated_others: BTreeSet::new() })
     }
 
     /// The value of a parameter by name; bits are 0 and 1.
@@ -246,7 +245,7 @@ impl Parameters {
     pub fn set(&mut self, number: &str, value: &str) -> Result<(), ParameterFault> {
         let number = number.trim();
         let Some((name, parameter, axis)) = self.look_up(number) else {
-            let known = TABLE.iter().filter(|(_, one)| one.printed(&self.map).is_some());
+            let known = TABLE.iter().filter(|(_, one)| one.printed(self.map).is_some());
             let numbers: Vec<String> =
                 known.flat_map(|(name, one)| self.addresses(name, one)).map(|(n, _)| n).collect();
             let nearest = nearest(number, numbers.iter().map(String::as_str)).map(str::to_string);
@@ -256,7 +255,7 @@ impl Parameters {
             let example = format!("{number}.{}", Axis::ALL[0].letter());
             return Err(ParameterFault::Axis { number: number.to_string(), example });
         }
-        let printed = parameter.printed(&self.map).unwrap_or_default();
+        let printed = parameter.printed(self.map).unwrap_or_default();
         let fault = |expected| ParameterFault::Value {
             number: number.to_string(),
             value: value.to_string(),
@@ -296,7 +295,7 @@ impl Parameters {
     pub fn under_number(&self, number: u32) -> Option<UnderNumber> {
         let mut found = UnderNumber::default();
         for (name, parameter) in TABLE {
-            let Some(printed) = parameter.printed(&self.map) else { continue };
+            let Some(printed) = parameter.printed(self.map) else { continue };
             let (word, bit) = printed.trim_start_matches('!').split_once('#').unwrap_or((printed, ""));
             if word.parse() != Ok(number) {
                 continue;
@@ -314,7 +313,7 @@ impl Parameters {
         let of_number = |number: &str| {
             let wanted = normal(number);
             TABLE.iter().find(|(_, parameter)| {
-                let printed = parameter.printed(&self.map);
+                let printed = parameter.printed(self.map);
                 printed.is_some_and(|printed| normal(printed.trim_start_matches('!')) == wanted)
             })
         };
@@ -331,7 +330,7 @@ impl Parameters {
 
     /// The numbers by which a parameter of this control is set, and the place of each value.
     fn addresses(&self, name: &'static str, parameter: &Parameter) -> Vec<(String, Axis)> {
-        let Some(number) = parameter.printed(&self.map) else { return Vec::new() };
+        let Some(number) = parameter.printed(self.map) else { return Vec::new() };
         let number = number.trim_start_matches('!');
         if parameter.per_axis {
             // Of axes that few machines have, what somebody set.
@@ -345,13 +344,13 @@ impl Parameters {
 
     /// The number that the control gives a parameter, without the mark of an inverted bit.
     pub fn number(&self, name: &str) -> Option<&'static str> {
-        Some(TABLE[place(name)?].1.printed(&self.map)?.trim_start_matches('!'))
+        Some(TABLE[place(name)?].1.printed(self.map)?.trim_start_matches('!'))
     }
 
     /// The value as the control's own screen has it: some bits have the opposite sense there.
     fn shown_value(&self, name: &str, parameter: &Parameter, axis: Axis) -> f64 {
         let value = self.axis_value(name, axis);
-        let is_inverted = parameter.printed(&self.map).is_some_and(|number| number.starts_with('!'));
+        let is_inverted = parameter.printed(self.map).is_some_and(|number| number.starts_with('!'));
         if is_inverted { 1.0 - value } else { value }
     }
 

@@ -10,7 +10,7 @@ use crate::setup_comment::lay_over;
 use crate::signal::Signal;
 use crate::{
     Axis, Bar, Chuck, ChuckOutlines, Material, Measure, MeasureEntry, Stock, Tailstock, Tool, ToolEntry,
-    embedded, nearest,
+    machine_files, nearest,
 };
 
 /// A pair of axis values in millimetres; X as a diameter.
@@ -299,7 +299,7 @@ pub(crate) fn typed(value: &toml::Value) -> String {
 
 /// Names of the machines in `data/machines`.
 pub fn machine_names() -> impl Iterator<Item = &'static str> {
-    embedded::MACHINES.iter().map(|(name, _)| *name)
+    machine_files::MACHINES.iter().map(|(name, _)| *name)
 }
 
 impl Setup {
@@ -513,7 +513,7 @@ impl Setup {
     /// An unknown machine or an unknown key among the overrides.
     pub fn machine(&self) -> Result<Machine, SetupFault> {
         let wanted = self.machine.as_deref().unwrap_or("generic-lathe");
-        let Some((_, text)) = embedded::MACHINES.iter().find(|(name, _)| *name == wanted) else {
+        let Some((_, text)) = machine_files::MACHINES.iter().find(|(name, _)| *name == wanted) else {
             let near = nearest(wanted, machine_names());
             let near = near.map_or(String::new(), |name| format!("; did you mean {name}?"));
             return Err(SetupFault { message: format!("no machine is called {wanted}{near}"), line: 0 });

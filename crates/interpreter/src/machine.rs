@@ -285,7 +285,7 @@ impl Interpreter {
             feed_mode: settings.feed_mode_at_power_on,
             feed: None,
             feed_is_lead: false,
-            has_run_out_words: false,
+            run_out: None,
             lead_is_left: false,
             path_mode: settings.path_mode_at_power_on,
             lead_by_count: None,

@@ -12,6 +12,7 @@ use crate::compensation::CompensationSettings;
 use crate::functions::FunctionId;
 use crate::functions::hole::{HoleInForce, HoleSettings};
 use crate::functions::multi_thread::{RunOutWords, flank_infeed};
+use crate::functions::thread::RunOut;
 use crate::in_force::InForce;
 use crate::offsets::{OffsetInForce, OffsetSettings};
 
@@ -65,8 +66,8 @@ pub(crate) struct Modal {
     pub(crate) feed: Option<Length>,
     /// A thread gave it: it is a lead.
     pub(crate) feed_is_lead: bool,
-    /// A thread block has had a run-out by words.
-    pub(crate) has_run_out_words: bool,
+    /// The run-out that words of a thread block gave last.
+    pub(crate) run_out: Option<RunOut>,
     /// That lead is a left-handed one, of a code that leads the spindle.
     pub(crate) lead_is_left: bool,
     pub(crate) path_mode: PathMode,

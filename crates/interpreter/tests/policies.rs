@@ -7,8 +7,8 @@ use turnwright_control::Control;
 use turnwright_control::policy::{
     CycleForm, CylinderRoughing, CylinderRoughingSign, CylinderRoughingTotal, CylinderRoughingWords,
     FeedPerRevolution, FinishingFigure, GrooveWithoutPeck, MissingPoint, NestedComment, OneShotWithMotion,
-    PeckModeWord, Policies, RepeatedAddress, RunOutLengthAlone, SingleCycleSide, SpeedLimitAtReset,
-    StoppingCodes,
+    PeckModeWord, Policies, RepeatedAddress, RunOutLengthAlone, RunOutWordsKept, SingleCycleSide,
+    SpeedLimitAtReset, StoppingCodes,
 };
 
 fn run_with(text: &str, restarts: u32, change: impl FnOnce(&mut Policies)) -> Run {
@@ -235,4 +235,28 @@ fn an_allowance_may_leave_nothing_to_rough_on_a_cylinder() {
     let text = b"G98 G01 X40 Z0 F100\nG07.1 C20 J-2 K4 R1 L2\nZ-5\nG07.1 C0\nM30\n";
     let run = run_on(control, text, &conditions);
     assert_eq!(run.alarm.expect("an alarm").key, "cylinder-roughing-zero");
+}
+
+#[test]
+fn run_out_words_of_a_thread_may_stay() {
+    let text = b"S500 M03\nG00 X20. Z2.\nG32 Z-10. F2 J2 K2\nG00 X40.\nZ2.\nX20.\nG32 Z-10. F2\nG00 X40.\nZ2.\nX20.\n\
+                 G32 Z-10. F2 J0\nG00 X40.\nZ2.\nX20.\nG32 Z-10. F2\nM30\n";
+    let run = |kept| {
+        let mut control = Control::load("gsk-980tdi").expect("a control");
+        control.policies.run_out_words_kept = kept;
+        let run = run_on(control, text, &Conditions::on("gsk-980tdi"));
+        let listing = run.listing();
+        let threads: Vec<String> =
+            listing.lines().filter(|line| line.starts_with("thread")).map(str::to_string).collect();
+        (threads.join("; "), run.diagnostics())
+    };
+    let own = "thread d20 z-8 lead2; thread d24 z-10 lead2 chained";
+    let plain = "thread d20 z-10 lead2";
+    let (threads, words) = run(RunOutWordsKept::OwnBlock);
+    assert_eq!(threads, [own, plain, plain, plain].join("; "));
+    assert_eq!(words, "warning T428 run-out-may-stay 7:1-13\n");
+    // The second thread is left as the first; J0 of the third counts for the fourth.
+    let (threads, words) = run(RunOutWordsKept::UntilChanged);
+    assert_eq!(threads, [own, own, plain, plain].join("; "));
+    assert_eq!(words, "");
 }

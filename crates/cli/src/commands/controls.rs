@@ -52,8 +52,8 @@ pub(crate) fn run(options: &Controls, printer: &Printer) -> Result<Status, Fault
 
 fn summary(control: &Control, speech: Speech) -> &str {
     match speech.language {
-        Language::English => &control.summary[0],
-        Language::Chinese => &control.summary[1],
+        Language::English => control.summary[0],
+        Language::Chinese => control.summary[1],
     }
 }
 
@@ -81,7 +81,7 @@ fn list_text(controls: &[Control], speech: Speech) -> String {
         let mark = if control.name == DEFAULT_CONTROL { speech.get("default-mark") } else { "" };
         table.row([
             name,
-            control.title.clone(),
+            control.title.to_string(),
             codes(control, speech).len().to_string(),
             control.parameters.all().len().to_string(),
             format!("{}{mark}", summary(control, speech)),
@@ -94,7 +94,7 @@ fn full_text(control: &Control, speech: Speech) -> String {
     let row = |key: &'static str, value: &str| (speech.get(key).to_string(), value.to_string());
     let mut out = facts(&[
         row("control", control.name),
-        row("title", &control.title),
+        row("title", control.title),
         row("summary", summary(control, speech)),
     ]);
     for (key, fields) in [("policies", policies(control)), ("limits", limits(control))] {

@@ -39,7 +39,7 @@ mod single_cycles;
 mod skip;
 mod stroke_check;
 mod tapping_in_line;
-mod thread;
+pub(crate) mod thread;
 mod three_point_arc;
 mod transforms;
 

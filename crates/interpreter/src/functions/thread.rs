@@ -24,7 +24,7 @@
 //! Source: thread cutting with constant and variable lead, both families.
 
 use turnwright_canon::{Action, Shape, SpindleState};
-use turnwright_control::policy::{RunOutBase, RunOutWords, VariableLeadStartAngle};
+use turnwright_control::policy::{RunOutBase, RunOutWords, RunOutWordsKept, VariableLeadStartAngle};
 use turnwright_diagnostics::Diagnostic;
 use turnwright_units::{
     Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, LeastIncrement, Length, Position, Radius, WorkTip,
@@ -111,7 +111,7 @@ fn rigid_thread(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
 
 /// How a thread is left, on controls with words for it.
 #[derive(Clone, Copy, Debug)]
-struct RunOut {
+pub(crate) struct RunOut {
     /// Signed, along the short axis; a radius when that is X.
     across: Length,
     /// Along the long axis; zero pulls straight out.
@@ -204,20 +204,28 @@ impl Core {
     /// J and K; `None` when there is no run-out.
     fn thread_run_out(&mut self, call: &Call<'_>) -> Result<Option<RunOut>, Alarm> {
         let Some(word) = call.block.word(b'J') else {
-            if self.modal.has_run_out_words && !self.is_behind_thread() {
-                self.warn_block("run-out-may-stay");
-            }
-            return Ok(None);
+            let kept = self.modal.run_out.filter(|_| !self.is_behind_thread());
+            return Ok(match self.control.policies.run_out_words_kept {
+                RunOutWordsKept::UntilChanged => kept,
+                RunOutWordsKept::OwnBlock => {
+                    if kept.is_some() {
+                        self.warn_block("run-out-may-stay");
+                    }
+                    None
+                }
+            });
         };
         let across = self.radius(word, Role::RunOut)?.0;
-        self.modal.has_run_out_words =
-            !across.is_zero() && self.control.policies.run_out_words == RunOutWords::LengthAsDepth;
         let along = call.block.word(b'K').map(|word| self.unsigned_length(word)).transpose()?;
         let along = match (along.unwrap_or(Length::ZERO), self.control.policies.run_out_words) {
             (along, RunOutWords::LengthAsDepth) if along.is_zero() => across.abs(),
             (along, _) => along,
         };
-        Ok((!across.is_zero()).then_some(RunOut { across, along }))
+        let run_out = (!across.is_zero()).then_some(RunOut { across, along });
+        if self.control.policies.run_out_words == RunOutWords::LengthAsDepth {
+            self.modal.run_out = run_out;
+        }
+        Ok(run_out)
     }
 
     /// Whether the thread of this block goes on from the block before; takes its start angle when it does not.
