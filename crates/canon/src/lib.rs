@@ -89,6 +89,11 @@ pub enum Action {
     Interpolation(Interpolation),
     /// Another rotation is coupled to the spindle in a fixed ratio, or, with `None`, uncoupled.
     Coupling(Option<SpeedRatio>),
+    /// From here on the spindle is led with a tap, or no more: it turns only while the tap moves, in step with it, and
+    /// both come to rest together. Threads are then the ways of the tap.
+    RigidTapping(bool),
+    /// From here on the speed of the spindle is watched, or, with `None`, no more.
+    SpindleWatch(Option<SpindleWatch>),
     /// How moves meet from here on.
     PathMode(PathMode),
     /// Standing still; the tool comes to rest also when the time is zero.
@@ -237,6 +242,19 @@ pub enum SpindleSpeed {
     Constant(Rpm),
     /// Following the diameter so that the tip sees this speed.
     Surface(SurfaceSpeed),
+}
+
+/// How the speed of the spindle is watched: an alarm comes when it is further off than all three limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SpindleWatch {
+    /// Behind a new order nobody looks before the speed is reached, but for no longer than this, ms.
+    pub delay_ms: u32,
+    /// A speed so near to the order counts as reached, per mille.
+    pub reached_permille: u32,
+    /// A speed that was reached may be off by so much, per mille.
+    pub allowed_permille: u32,
+    /// Smaller differences are no alarm.
+    pub band: Rpm,
 }
 
 /// Coolant on or off.

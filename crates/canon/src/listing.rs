@@ -81,6 +81,16 @@ pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
             out.extend_from_slice(format!("coupling {}:{}", ratio.spindle, ratio.other).as_bytes());
         }
         Action::Coupling(None) => out.extend_from_slice(b"coupling off"),
+        Action::RigidTapping(true) => out.extend_from_slice(b"rigid-tapping on"),
+        Action::SpindleWatch(Some(watch)) => {
+            let [reached, allowed] =
+                [watch.reached_permille, watch.allowed_permille].map(|permille| f64::from(permille) / 10.0);
+            let (delay, band) = (watch.delay_ms, watch.band.0);
+            let text = format!("spindle-watch {delay}ms reached{reached}% allowed{allowed}% band{band}rpm");
+            out.extend_from_slice(text.as_bytes());
+        }
+        Action::SpindleWatch(None) => out.extend_from_slice(b"spindle-watch off"),
+        Action::RigidTapping(false) => out.extend_from_slice(b"rigid-tapping off"),
         Action::PathMode(mode) => out.extend_from_slice(match mode {
             PathMode::Continuous => b"path continuous",
             PathMode::ExactStop => b"path exact-stop",

@@ -38,6 +38,7 @@ pub(crate) fn rates(machine: &Machine, parameters: &Parameters, stops_optionally
             delay_s: parameters.value("speed-arrival-delay").max(0.0) / 1e3,
         },
         gears: gears(machine),
+        holds_tapping: parameters.bit("rigid-tap-feed-hold"),
         orientation: machine.orientation_m.map(|code| Orientation { code, seconds: machine.orientation_s }),
         stop_s: machine.stop_s,
         optional_stop_s: if stops_optionally { machine.stop_s } else { 0.0 },

@@ -655,3 +655,38 @@ fn cuts_wait_for_the_speed_where_the_parameter_says_so() {
     let late = waited_s(&["--param", "3708#0=1", "--param", "3740=5000"]);
     assert!((late - (5.0 - 1.621_388_889)).abs() < 1e-6, "{late}");
 }
+
+#[test]
+fn a_rigid_tap_is_timed_with_the_ramps_of_the_spindle() {
+    let folder = Folder::new();
+    let program = folder.file("tap.nc", "O1\nG99 G00 X0 Z10.\nM29 S300\nG84 Z-15. R-5. F1.5\nG80\nM30\n");
+    let setup = folder.file("tap.toml", "control = \"fanuc-0i-tf\"\n");
+    let ran = turnwright(&["time", &program, "--format", "json", "--setup", &setup]);
+    let document: Value = serde_json::from_str(&ran.out).expect("JSON");
+    let time = |key: &str| document["programs"][0]["time"][key].as_f64().expect("seconds");
+    // Twice 13.33 turns at 5 a second, and twice half of the two ramps of 0.3 s.
+    assert!((time("threading_s") - 16.0 / 3.0).abs() < 1e-6, "{document}");
+    assert!((time("spindle_wait_s") - 0.6).abs() < 1e-3 && time("spindle_s") == 0.0, "{document}");
+    // It needs no way to get into step: 5 mm in front of Z0 are enough at any lead.
+    let steep = folder.file("steep.nc", "O1\nG99 G00 X0 Z10.\nM29 S2000\nG84 Z-40. R-8. F3.\nG80\nM30\n");
+    let ran = turnwright(&["run", &steep, "--setup", &setup]);
+    assert!(!ran.err.contains("T081"), "{}", ran.err);
+}
+
+#[test]
+fn a_spindle_that_cannot_have_its_speed_in_the_time_of_g26_is_an_alarm() {
+    let folder = Folder::new();
+    let setup = folder.file("watch.toml", "control = \"fanuc-0i-tf\"\n");
+    let run = |delay: u32| {
+        let text = format!("O1\nG26 P{delay} Q5 R10 I50\nG97 S2000 M03\nM05\nM30\n");
+        turnwright(&["run", &folder.file("watch.nc", &text), "--setup", &setup])
+    };
+    // 1000 rpm/s: 500 rpm behind half a second; within 10 % of 2000 behind 1.8.
+    let ran = run(500);
+    assert_eq!(ran.status, 1, "{}", ran.err);
+    assert!(ran.err.contains("alarm[OH0704]: The spindle turns 500 rpm where 2000"), "{}", ran.err);
+    assert!(ran.err.contains("watch.nc:3:1"), "{}", ran.err);
+    assert_eq!(run(1799).status, 1);
+    let ran = run(1800);
+    assert!(ran.status == 0 && !ran.err.contains("OH0704"), "{}", ran.err);
+}

@@ -57,7 +57,7 @@ pub struct Tap {
     pub forward: Action,
     /// After the last way out, when the spindle goes on as before.
     pub restart: Option<Action>,
-    /// In step with the spindle by this lead; `None`: at feed, the holder gives way.
+    /// In step with the spindle by this lead, which is led for it; `None`: at feed, the holder gives way.
     pub lead: Option<Lead>,
     /// Pecks of rigid tapping.
     pub peck: Option<Peck>,
@@ -126,6 +126,8 @@ enum Next {
     Place,
     Clamp,
     RPoint,
+    /// A rigid tap leads the spindle, and lets it go.
+    Lead,
     StartSpindle,
     In(i64),
     /// A drill goes back from peck to peck.
@@ -138,6 +140,7 @@ enum Next {
     TapOut(i64),
     StopOutside(i64),
     Forward(i64),
+    LetGo,
     Out,
     Home,
     Free,
@@ -198,6 +201,7 @@ impl Hole {
                 Next::Place => self.place(),
                 Next::Clamp => self.clamp(),
                 Next::RPoint => self.r_point(),
+                Next::Lead => self.lead(true, Next::StartSpindle),
                 Next::StartSpindle => self.start_spindle(),
                 Next::In(count) => self.work_in(count),
                 Next::Back(count) => self.back(count),
@@ -213,7 +217,8 @@ impl Hole {
                 Next::Forward(count) if count < self.pecks => {
                     self.turn(|tap| Some(&tap.forward), Next::In(count + 1))
                 }
-                Next::Forward(_) => self.turn(|tap| tap.restart.as_ref(), Next::Home),
+                Next::Forward(_) => self.turn(|tap| tap.restart.as_ref(), Next::LetGo),
+                Next::LetGo => self.lead(false, Next::Home),
                 Next::Out => self.out(),
                 Next::Home => self.home(),
                 Next::Free => self.free(),
@@ -251,8 +256,15 @@ impl Hole {
     }
 
     fn r_point(&mut self) -> Option<CycleMove> {
-        self.next = if self.tap().is_some() { Next::StartSpindle } else { Next::In(1) };
+        self.next = if self.tap().is_some() { Next::Lead } else { Next::In(1) };
         self.tell(self.request.context.rapid(self.at_depth(0)), Phase::Approach)
+    }
+
+    /// A rigid tap leads the spindle from here on, or no more.
+    fn lead(&mut self, is_led: bool, next: Next) -> Option<CycleMove> {
+        self.next = next;
+        self.tap()?.lead?;
+        self.tell(Action::RigidTapping(is_led), Phase::Thread)
     }
 
     fn start_spindle(&mut self) -> Option<CycleMove> {
@@ -527,12 +539,13 @@ mod tests {
         let asked = HoleRequest { dwell: Seconds(0.5), ..request(tap(None)) };
         let steps: Vec<_> = hole(asked).expect("a hole").skip(2).map(|step| step.action).collect();
         let is_spindle = |place: usize, state| steps[place] == spindle(state);
-        assert_eq!(steps.len(), 8);
-        assert_eq!(steps[0].end_point().map(|to| to.z), Some(mm(-10)));
-        assert!(is_spindle(1, SpindleState::Stop) && is_spindle(3, SpindleState::CounterClockwise));
-        assert_eq!(steps[2], Action::Dwell(Dwell::Time(Seconds(0.5))));
-        assert_eq!(steps[4].end_point().map(|to| to.z), Some(mm(2)));
-        assert!(is_spindle(5, SpindleState::Stop) && is_spindle(6, SpindleState::Clockwise));
+        assert_eq!(steps.len(), 10);
+        assert_eq!((&steps[0], &steps[8]), (&Action::RigidTapping(true), &Action::RigidTapping(false)));
+        assert_eq!(steps[1].end_point().map(|to| to.z), Some(mm(-10)));
+        assert!(is_spindle(2, SpindleState::Stop) && is_spindle(4, SpindleState::CounterClockwise));
+        assert_eq!(steps[3], Action::Dwell(Dwell::Time(Seconds(0.5))));
+        assert_eq!(steps[5].end_point().map(|to| to.z), Some(mm(2)));
+        assert!(is_spindle(6, SpindleState::Stop) && is_spindle(7, SpindleState::Clockwise));
     }
 
     #[test]
@@ -543,7 +556,8 @@ mod tests {
             steps.iter().filter_map(|step| step.action.end_point()).map(|to| to.z.to_mm()).collect();
         assert_eq!(ends, [-3.0, -2.0, -8.0, -7.0, -10.0, 2.0, 10.0]);
         let turns = steps.iter().filter(|step| step.action.end_point().is_none()).count();
-        assert_eq!(turns, 3 * 4);
+        // Besides, it is led and let go.
+        assert_eq!(turns, 3 * 4 + 2);
     }
 
     #[test]

@@ -201,6 +201,8 @@ impl PathRecorder {
             Action::PathMode(_)
             | Action::Interpolation(_)
             | Action::Coupling(_)
+            | Action::RigidTapping(_)
+            | Action::SpindleWatch(_)
             | Action::Spindle { .. }
             | Action::Coolant(_)
             | Action::Auxiliary { .. }

@@ -295,6 +295,8 @@ impl Interpreter {
             rpm_max: None,
             spindle: Default::default(),
             gear: 1,
+            watch: settings.watch,
+            is_watched: false,
             tool: 0,
             offset: 0,
             geometry: 0,

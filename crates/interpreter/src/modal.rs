@@ -1,6 +1,6 @@
 //! The modal state: everything that stays in force from block to block.
 
-use turnwright_canon::{PathMode, SpindleState};
+use turnwright_canon::{PathMode, SpindleState, SpindleWatch};
 use turnwright_control::policy::Policies;
 use turnwright_control::{Axis, Parameters};
 use turnwright_cycles::FlankInfeed;
@@ -80,6 +80,9 @@ pub(crate) struct Modal {
     pub(crate) spindle: SpindleState,
     /// Gear of the spindle, 1 to 8.
     pub(crate) gear: u8,
+    /// How its speed is watched, when it is.
+    pub(crate) watch: SpindleWatch,
+    pub(crate) is_watched: bool,
     pub(crate) tool: u32,
     pub(crate) offset: u32,
     /// Number of the geometry offset in force; that of the wear is `offset`.
@@ -162,6 +165,10 @@ pub(crate) struct Settings {
     pub(crate) rpm_max: Option<Rpm>,
     /// Of gears 1 to 8; `None` without.
     pub(crate) gear_rpm_max: [Option<Rpm>; 8],
+    /// How the speed is watched before any word says it.
+    pub(crate) watch: SpindleWatch,
+    /// Words and parameters of the watch count tenths of a percent.
+    pub(crate) watch_counts_tenths: bool,
     pub(crate) surface_speed_available: bool,
     /// Number of the axis whose coordinate gives the diameter; 0 and 1 are X.
     pub(crate) surface_speed_axis: u32,
@@ -338,6 +345,21 @@ impl Settings {
                 rpm("gear-7-maximum-rpm"),
                 rpm("gear-8-maximum-rpm"),
             ],
+            watch: SpindleWatch {
+                delay_ms: count("fluctuation-delay"),
+                reached_permille: count("fluctuation-reached").saturating_mul(if bit("fluctuation-unit") {
+                    1
+                } else {
+                    10
+                }),
+                allowed_permille: count("fluctuation-allowed").saturating_mul(if bit("fluctuation-unit") {
+                    1
+                } else {
+                    10
+                }),
+                band: Rpm(count("fluctuation-band")),
+            },
+            watch_counts_tenths: bit("fluctuation-unit"),
             surface_speed_available: bit("surface-speed-available"),
             surface_speed_axis: count("surface-speed-axis"),
             spindle_selection_code: count("spindle-selection-code"),

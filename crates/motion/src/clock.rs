@@ -6,7 +6,7 @@
 //! revolution with the spindle standing, no feed at all) has no known time: it counts no seconds and is
 //! counted in [`Clock::unknown_feeds`].
 
-use turnwright_canon::{Action, Command, Dwell, OtherAxes, RapidPath, Shape};
+use turnwright_canon::{Action, Command, Dwell, OtherAxes, RapidPath, Shape, SpindleWatch};
 use turnwright_units::{Feed, Lead, Position, WorkTip};
 
 use crate::axes::AxisPlaces;
@@ -15,8 +15,25 @@ use crate::leg::{Place, X, Z};
 use crate::path::{ArcPath, CutPath, stretches};
 use crate::spindle::{Order, Shift, Spindle};
 use crate::surface::Slowness;
+use crate::tap::TapPace;
 use crate::totals::{Kind, SECONDS_MAX, Totals};
 use crate::{MachineRates, RapidSurfaceSpeed, SpeedWait};
+
+/// Differences of speed below this are rounding, rpm.
+const RPM_NEAR: f64 = 1e-6;
+
+/// A spindle that is not where the watch of its speed wants it: an alarm on the machine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpindleStray {
+    /// Program text of the command.
+    pub source: u32,
+    /// Its line.
+    pub line: u32,
+    /// The speed asked for, rpm.
+    pub ordered_rpm: f64,
+    /// The real one, rpm.
+    pub real_rpm: f64,
+}
 
 /// The spindle speeds of a move, rpm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +84,12 @@ pub struct Clock {
     spindle: Spindle,
     /// The speed of the thread in progress, rpm: a chain of threads keeps it.
     thread_rpm: Option<f64>,
+    /// The spindle is led with a tap.
+    is_led: bool,
+    watch: Option<SpindleWatch>,
+    /// Text and line of the last command while the speed is watched.
+    watched_at: (u32, u32),
+    stray: Option<SpindleStray>,
     /// What the last command began with, when it changed the gear.
     shift: Option<Shift>,
     totals: Totals,
@@ -89,6 +112,10 @@ impl Clock {
             tool: None,
             spindle: Spindle::new(&rates),
             thread_rpm: None,
+            is_led: false,
+            watch: None,
+            watched_at: (0, 0),
+            stray: None,
             shift: None,
             totals: Totals::default(),
             unknown_feeds: 0,
@@ -138,6 +165,11 @@ impl Clock {
         self.shift
     }
 
+    /// The spindle is led with a tap.
+    pub(crate) const fn is_led(&self) -> bool {
+        self.is_led
+    }
+
     /// Whether a cut from here would wait for the spindle.
     pub(crate) fn would_wait(&self) -> bool {
         let mut spindle = self.spindle;
@@ -168,6 +200,36 @@ impl Clock {
     /// In the cuts so far the spindle could not follow the diameter: it turns at `rpm`.
     pub(crate) fn lag_behind(&mut self, rpm: f64) {
         self.spindle.turn_at(rpm);
+        if let (Some(watch), Order::Surface(law)) = (self.watch, self.spindle.order) {
+            // It was reached once, so only the permitted change counts.
+            let watch = SpindleWatch { reached_permille: 0, ..watch };
+            self.judge(watch, law.rpm_at(self.position.x.to_mm()), rpm);
+        }
+    }
+
+    /// The first time that the spindle was not where the watch of its speed wants it.
+    pub(crate) const fn stray(&self) -> Option<SpindleStray> {
+        self.stray
+    }
+
+    /// Judges the speed at the moment from which it is looked at after a new order: when the time for reaching it is over.
+    fn watch_order(&mut self) {
+        let Some(watch) = self.watch.filter(|_| !self.is_led) else { return };
+        let shifting_s = self.shift.map_or(0.0, |shift| shift.seconds);
+        let mut then = self.spindle;
+        then.run((f64::from(watch.delay_ms) / 1e3 - shifting_s).max(0.0));
+        self.judge(watch, self.spindle.target_rpm(), then.actual_rpm());
+    }
+
+    fn judge(&mut self, watch: SpindleWatch, ordered_rpm: f64, real_rpm: f64) {
+        let permitted = f64::from(watch.reached_permille.max(watch.allowed_permille)) / 1000.0 * ordered_rpm;
+        // Where nobody has said what is permitted, nothing can be wrong.
+        let is_told = watch.allowed_permille > 0 || watch.band.0 > 0;
+        let off = (ordered_rpm - real_rpm).abs();
+        if is_told && ordered_rpm > 0.0 && off > permitted.max(f64::from(watch.band.0)) + RPM_NEAR {
+            let (source, line) = self.watched_at;
+            self.stray.get_or_insert(SpindleStray { source, line, ordered_rpm, real_rpm });
+        }
     }
 
     /// Measures the next command.
@@ -184,12 +246,16 @@ impl Clock {
     /// As [`Clock::advance`], but for the sums, with the way of a cutting move that has been measured already.
     pub(crate) fn advance_along(&mut self, command: &Command, path: Option<CutPath>) -> Timing {
         self.shift = None;
+        if self.watch.is_some() {
+            self.watched_at = (command.origin.source, command.origin.line);
+        }
         let timing = match &command.action {
             Action::Rapid { to, path, others } => self.rapid(*to, *path, others.as_deref()),
             Action::Feed { to, shape, feed, others } => {
                 let path = path.unwrap_or_else(|| CutPath::new(self.position, *to, shape));
                 self.cut(*to, shape, *feed, others.as_deref(), &path)
             }
+            Action::Thread { to, lead, .. } if self.is_led => self.tap(*to, *lead),
             Action::Thread { to, shape, lead, lead_end, is_chained, .. } => {
                 if !is_chained {
                     self.thread_rpm = None;
@@ -228,6 +294,14 @@ impl Clock {
                 self.axes.interpolate(*interpolation);
                 self.still(Kind::Other, 0.0)
             }
+            Action::RigidTapping(is_led) => {
+                self.is_led = *is_led;
+                self.order_speed(None)
+            }
+            Action::SpindleWatch(watch) => {
+                self.watch = *watch;
+                self.still(Kind::Other, 0.0)
+            }
             Action::PathMode(_) | Action::Coupling(_) | Action::Message(_) | Action::Output(_) => {
                 self.still(Kind::Other, 0.0)
             }
@@ -247,8 +321,11 @@ impl Clock {
     /// The spindle gets another order, or another gear in which to obey the last one.
     fn order_speed(&mut self, gear: Option<usize>) -> Timing {
         self.shift = gear.map(|gear| self.spindle.shift(gear, &self.rates));
-        self.spindle.aim(self.spindle.order.rpm_at(self.position.x.to_mm()));
-        let waits = self.rates.speed_wait == SpeedWait::Order;
+        // Led with a tap it stands until that moves.
+        let rpm = if self.is_led { 0.0 } else { self.spindle.order.rpm_at(self.position.x.to_mm()) };
+        self.spindle.aim(rpm);
+        self.watch_order();
+        let waits = self.is_led || self.rates.speed_wait == SpeedWait::Order;
         let speeding_s = if waits { self.spindle.seconds_to_target() } else { 0.0 };
         let mut timing = self.still(Kind::Spindle, speeding_s);
         timing.seconds += self.shift.map_or(0.0, |shift| shift.seconds);
@@ -487,6 +564,25 @@ impl Clock {
             from: self.position,
             seconds: waited_s + known.seconds,
             waited_s,
+            length_mm: known.length_mm,
+            rpm: turning(RpmRange::between(rpm, rpm)),
+        }
+    }
+
+    /// The way of a tap and the spindle that is led with it, from rest to rest. What it takes beyond the turns at full
+    /// speed is the spindle's.
+    fn tap(&mut self, to: Position<WorkTip>, lead: Lead) -> Timing {
+        let pace = TapPace::new(self, to, lead);
+        let seconds = pace.map(|pace| pace.seconds());
+        let at_speed = pace.map_or(0.0, |pace| pace.way_mm / pace.speed_mm_per_s);
+        let known =
+            self.known_minutes(seconds.map(|seconds| seconds / 60.0), pace.map_or(0.0, |pace| pace.way_mm));
+        let rpm = pace.map_or(0.0, |pace| pace.peak_rpm());
+        Timing {
+            kind: Kind::Threading,
+            from: self.position,
+            seconds: known.seconds,
+            waited_s: (known.seconds - at_speed).max(0.0),
             length_mm: known.length_mm,
             rpm: turning(RpmRange::between(rpm, rpm)),
         }

@@ -32,12 +32,13 @@ mod smoother;
 mod spindle;
 mod summary;
 mod surface;
+mod tap;
 mod thread;
 mod thread_chain;
 mod totals;
 
 pub use blocks::{BlockTime, BlockTimes, LINES_MAX, LineTime};
-pub use clock::{Clock, RpmRange, Timing};
+pub use clock::{Clock, RpmRange, SpindleStray, Timing};
 pub use dynamics::{AXIS_COUNT, AccDec, AxisDynamics, CORNER_S_MAX, Dynamics};
 pub use gears::{Gear, GearSelection, Gears};
 pub use leg::Place;

@@ -9,7 +9,7 @@
 use std::collections::VecDeque;
 
 use turnwright_canon::{Action, Command, OtherAxes, PathMode, RapidPath};
-use turnwright_units::{Position, WorkTip};
+use turnwright_units::{Lead, Position, WorkTip};
 
 use crate::clock::Clock;
 use crate::leg::{Leg, Place, X, Z};
@@ -18,6 +18,7 @@ use crate::planner::{Feedrate, Pace, RunLimits};
 use crate::run::CuttingRun;
 use crate::smoother::Smoother;
 use crate::spindle::{Shift, SpindleAngle};
+use crate::tap::TapPace;
 use crate::thread::ThreadPlan;
 use crate::thread_chain::ThreadChain;
 use crate::totals::Kind;
@@ -109,6 +110,8 @@ pub struct Player {
     thread: ThreadChain,
     /// The change of gear that is going on.
     shift: Option<Shift>,
+    /// The spindle as a tap leads it.
+    led: Option<SpindleAngle>,
     is_stuck: bool,
 }
 
@@ -139,6 +142,7 @@ impl Player {
             spindle: SpindleAngle::default(),
             thread: ThreadChain::default(),
             shift: None,
+            led: None,
             is_stuck: false,
         }
     }
@@ -188,6 +192,9 @@ impl Player {
         match &command.action {
             Action::Rapid { to, path, others } => {
                 self.rapid(command, *to, *path, others.as_deref(), block, sink)
+            }
+            Action::Thread { to, lead, .. } if self.clock.is_led() => {
+                self.tap(command, *to, *lead, block, sink)
             }
             Action::Thread { .. } => self.thread.add(command, &mut self.clock, &self.dynamics),
             _ => {
@@ -245,10 +252,14 @@ impl Player {
         let x_mm = if aims_at_end { self.clock.position().x.to_mm() } else { place[X] };
         let (rpm, ramp_rpm_per_s) = match self.shift {
             Some(shift) => (shift.rpm, shift.ramp_rpm_per_s),
+            None if self.clock.is_led() => (0.0, spindle.ramp_rpm_per_s()),
             None if kind == Kind::Threading => (self.spindle.rpm, 0.0),
             None => (spindle.wanted_rpm(x_mm), spindle.ramp_rpm_per_s()),
         };
-        self.spindle.turn(rpm, ramp_rpm_per_s, 1.0 / self.rate_hz);
+        match self.led {
+            Some(angle) => self.spindle = angle,
+            None => self.spindle.turn(rpm, ramp_rpm_per_s, 1.0 / self.rate_hz),
+        }
         sink(&Sample {
             time_s,
             place,
@@ -421,6 +432,62 @@ impl Player {
             let speed = if is_straight { self.lanes[X].at(time_s).speed_mm_per_s } else { 0.0 };
             self.lanes.iter_mut().for_each(|lane| lane.forget_before(time_s));
             self.give(place, speed, Kind::Rapid, block, sink);
+        }
+    }
+
+    /// A tap and the spindle that it leads: the place gives the angle.
+    fn tap(
+        &mut self,
+        command: &Command,
+        to: Position<WorkTip>,
+        lead: Lead,
+        block: Block,
+        sink: &mut dyn FnMut(&Sample),
+    ) {
+        let from = self.clock.place();
+        let end = Clock::place_after(from, to, None);
+        let pace = TapPace::new(&self.clock, to, lead);
+        let direction = self.clock.spindle().wanted_rpm(from[X]).signum();
+        let start = self.spindle;
+        let holds = self.clock.rates().holds_tapping;
+        let is_held = |panel: &Panel| holds && panel.is_held;
+        self.clock.advance(command);
+        let Some(pace) = pace else { return };
+        let lane = &mut self.lanes[X];
+        lane.begin(pace.limits);
+        lane.preset(Feedrate::Override(1.0), is_held(&self.panel));
+        // An empty lane has room for one.
+        let _ = lane.push(pace.way_mm, pace.speed_mm_per_s, pace.speed_mm_per_s);
+        lane.close();
+        loop {
+            let time_s = self.next_s() - self.now_s;
+            self.lanes[X].plan();
+            if let Some(duration) = self.lanes[X].duration_s().filter(|duration| time_s >= *duration) {
+                self.now_s += duration;
+                break;
+            }
+            if self.look_at_panel() {
+                self.lanes[X].interrupt(time_s, Feedrate::Override(1.0), is_held(&self.panel));
+                continue;
+            }
+            let lane = &mut self.lanes[X];
+            if lane.is_held() && self.changes.is_empty() && lane.is_resting(time_s) {
+                self.is_stuck = true;
+                break;
+            }
+            let state = lane.at(time_s);
+            lane.forget_before(time_s);
+            let part = state.at_mm / pace.way_mm;
+            let place = std::array::from_fn(|axis| from[axis] + (end[axis] - from[axis]) * part);
+            self.led = Some(SpindleAngle {
+                rpm: direction * 60.0 * state.speed_mm_per_s / pace.lead_mm,
+                turns: start.turns + state.at_mm / pace.lead_mm,
+            });
+            self.give(place, state.speed_mm_per_s, Kind::Threading, block, sink);
+        }
+        self.led = None;
+        if !self.is_stuck {
+            self.spindle = SpindleAngle { rpm: 0.0, turns: start.turns + pace.way_mm / pace.lead_mm };
         }
     }
 

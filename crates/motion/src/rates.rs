@@ -119,6 +119,8 @@ pub struct MachineRates {
     pub arrival: Arrival,
     /// Gears of the spindle.
     pub gears: Gears,
+    /// Feed hold acts while a rigid tap works.
+    pub holds_tapping: bool,
     /// The function that stops the spindle at an angle, if the machine has one.
     pub orientation: Option<Orientation>,
     /// The spindle turns no faster.
@@ -151,6 +153,7 @@ impl Default for MachineRates {
             speed_wait: SpeedWait::Order,
             arrival: Arrival::default(),
             gears: Gears::default(),
+            holds_tapping: false,
             orientation: None,
             rpm_max: Some(Rpm(4_000)),
             rpm_min_surface: 20,

@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 use turnwright_canon::{Action, Command, PathMode};
 use turnwright_units::{Position, WorkTip};
 
-use crate::clock::{Clock, Timing};
+use crate::clock::{Clock, SpindleStray, Timing};
 use crate::leg::Leg;
 use crate::orders::leg_limit;
 use crate::run::{CuttingRun, LEGS_MAX};
@@ -87,6 +87,11 @@ impl Schedule {
     /// Commands whose time is unknown because nothing would turn or move.
     pub const fn unknown_feeds(&self) -> u64 {
         self.clock.unknown_feeds()
+    }
+
+    /// The first time that the spindle was not where the watch of its speed wants it.
+    pub const fn stray(&self) -> Option<SpindleStray> {
+        self.clock.stray()
     }
 
     /// What the times rest on besides the program: keys of sentences in the report.

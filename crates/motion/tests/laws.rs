@@ -382,6 +382,7 @@ fn nothing_makes_a_time_that_is_no_number() {
             speed_wait: [SpeedWait::Order, SpeedWait::Cut, SpeedWait::Thread][round % 3],
             arrival: Arrival { before_cut: round % 2 == 0, before_thread: round % 5 == 0, delay_s: rate() },
             gears: gears(&mut rate, round),
+            holds_tapping: false,
             orientation: Some(Orientation { code: 10, seconds: rate() }).filter(|_| round % 3 == 0),
             rpm_max: None,
             rpm_min_surface: 0,

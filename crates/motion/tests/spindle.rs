@@ -1,9 +1,9 @@
 //! The spindle: gears, and who waits for its speed. Expected values are worked out by hand.
 
-use turnwright_canon::{Action, Command, Origin, Shape, SpindleSpeed, SpindleState};
+use turnwright_canon::{Action, Command, Origin, Shape, SpindleSpeed, SpindleState, SpindleWatch};
 use turnwright_motion::{
-    Arrival, Clock, Dynamics, Gear, GearSelection, Gears, Kind, MachineRates, Player, Sample, Schedule,
-    SpeedWait, Timing,
+    Arrival, Clock, Dynamics, Gear, GearSelection, Gears, Kind, MachineRates, Panel, Player, Sample,
+    Schedule, SpeedWait, Timing,
 };
 use turnwright_units::{
     Angle, Feed, FeedPerRevolution, Lead, Length, Position, Radius, Rpm, SurfaceSpeed, WorkTip,
@@ -196,4 +196,146 @@ fn a_cut_that_does_not_wait_follows_the_spindle_as_it_speeds_up() {
     let off_mm = samples.iter().map(|sample| (sample.place[1] + 0.2 * sample.turns).abs());
     let worst = off_mm.fold(0.0, f64::max);
     assert!(worst < 0.08 * 3.34, "{worst}");
+}
+
+fn turning(state: SpindleState, rpm: u32) -> Action {
+    Action::Spindle { state, speed: SpindleSpeed::Constant(Rpm(rpm)), rpm_max: None }
+}
+
+/// A hole from Z5 to Z-15 and back with lead 1.5, out at another speed, as the cycle gives it out.
+fn tapping(rpm: u32, out_rpm: u32) -> Vec<Action> {
+    use SpindleState::{Clockwise, CounterClockwise, Stop};
+    let way = |z| thread(at(0.0, z), 1.5);
+    vec![
+        Action::Relocate { to: at(0.0, 5.0), others: None },
+        Action::RigidTapping(true),
+        turning(Clockwise, rpm),
+        way(-15.0),
+        turning(Stop, rpm),
+        turning(CounterClockwise, out_rpm),
+        way(5.0),
+        turning(Stop, rpm),
+        Action::RigidTapping(false),
+    ]
+}
+
+#[test]
+fn a_rigid_tap_takes_the_ramps_of_the_spindle_and_no_wait_for_an_angle() {
+    let timings = timed(MachineRates::default(), &tapping(300, 300));
+    // 20 mm are 13.33 turns, at 5 a second 2.667 s; speeding up and slowing down at 1000 rpm/s cost half of 0.3 s each.
+    near(
+        &[timings[3].seconds, timings[3].waited_s, timings[6].seconds],
+        &[8.0 / 3.0 + 0.3, 0.3, 8.0 / 3.0 + 0.3],
+    );
+    assert_eq!(timings[3].kind, Kind::Threading);
+    let others: f64 =
+        timings.iter().enumerate().filter(|(place, _)| ![3, 6].contains(place)).map(|(_, t)| t.seconds).sum();
+    assert_eq!(others, 0.0, "orders of the spindle take effect while the tap moves");
+    // Out at 450: 1.778 s and 0.45.
+    near(&[timed(MachineRates::default(), &tapping(300, 450))[6].seconds], &[16.0 / 9.0 + 0.45]);
+    // At 2000 rpm the 13.33 turns are over before the speed is there: n²/(60·1000) = 13.33 gives 894.4 rpm, 1.789 s.
+    let short = timed(MachineRates::default(), &tapping(2000, 2000))[3];
+    near(&[short.seconds, short.rpm.expect("turning").max], &[2.0 * 0.8f64.sqrt(), 1000.0 * 0.8f64.sqrt()]);
+    // A spindle that turns already stops first.
+    let mut turning_before = vec![spindle(1000)];
+    turning_before.extend(tapping(300, 300));
+    near(&[timed(MachineRates::default(), &turning_before)[2].seconds], &[1.0]);
+}
+
+#[test]
+fn a_slow_axis_holds_the_spindle_back() {
+    let mut dynamics = Dynamics::default();
+    dynamics.axes[1].acceleration_per_s2 = 5.0;
+    let rates = MachineRates { dynamics: Some(dynamics), ..MachineRates::default() };
+    // 7.5 mm/s at 5 mm/s² instead of 25: 1.5 s instead of 0.3.
+    let tap = timed(rates, &tapping(300, 300))[3];
+    assert!((tap.seconds - (8.0 / 3.0 + 1.5)).abs() < 1e-3, "{}", tap.seconds);
+}
+
+#[test]
+fn tap_and_spindle_stay_in_step_and_come_to_rest_together() {
+    let rates = MachineRates { dynamics: Some(Dynamics::default()), ..MachineRates::default() };
+    let samples = samples(rates, &tapping(300, 450));
+    let deepest = samples.iter().map(|sample| sample.place[1]).fold(f64::INFINITY, f64::min);
+    assert!((-15.0..-14.9999).contains(&deepest), "no overshoot: {deepest}");
+    let last = samples.last().expect("samples");
+    assert!(last.rpm.abs() < 2.0 && (last.turns - 80.0 / 3.0).abs() < 1e-4, "{last:?}");
+    let turn = samples.iter().position(|sample| sample.rpm < 0.0).expect("the way out");
+    for (place, pair) in samples.windows(2).enumerate() {
+        // In: 1.5 mm down a turn; out: up again behind 13.33 turns.
+        let sample = pair[1];
+        let expected = if place + 1 < turn { 5.0 - 1.5 * sample.turns } else { 1.5 * sample.turns - 35.0 };
+        assert!((sample.place[1] - expected).abs() < 1e-9, "{sample:?}");
+        // 1000 rpm/s are 1 rpm a tick; the sign changes at standstill.
+        assert!((sample.rpm - pair[0].rpm).abs() < 1.0 + 1e-6, "{pair:?}");
+        assert!((-450.0 - 1e-5..=300.0 + 1e-5).contains(&sample.rpm));
+    }
+}
+
+#[test]
+fn feed_hold_acts_on_a_tap_only_where_the_parameter_lets_it() {
+    for (holds_tapping, is_stuck) in [(false, false), (true, true)] {
+        let dynamics = Some(Dynamics::default());
+        let rates = MachineRates { dynamics, holds_tapping, ..MachineRates::default() };
+        let mut player = Player::new(at(0.0, 5.0), rates, 1000.0);
+        player.set_at(1.0, Panel { is_held: true, ..Panel::default() });
+        let mut samples = Vec::new();
+        let mut sink = |sample: &Sample| samples.push(*sample);
+        for action in tapping(300, 300) {
+            player.push(&Command::new(action, Origin::line(1)), &mut sink);
+        }
+        player.finish(&mut sink);
+        assert_eq!(player.is_stuck(), is_stuck);
+        // Held, tap and spindle have come to rest together; they are where the lead says.
+        let last = samples.last().expect("samples");
+        if is_stuck {
+            assert!(
+                last.rpm.abs() < 2.0 && (last.place[1] - (5.0 - 1.5 * last.turns)).abs() < 1e-9,
+                "{last:?}"
+            );
+            assert!((1.2..1.5).contains(&last.time_s), "{last:?}");
+        }
+    }
+}
+
+/// The first stray in a program of one order, P ms, Q and R per mille, I rpm.
+fn watched(actions: &[Action], delay_ms: u32, [reached, allowed]: [u32; 2], band: u32) -> Option<(f64, f64)> {
+    let watch =
+        SpindleWatch { delay_ms, reached_permille: reached, allowed_permille: allowed, band: Rpm(band) };
+    let rates = MachineRates { dynamics: Some(Dynamics::default()), ..MachineRates::default() };
+    let mut schedule = Schedule::new(at(40.0, 0.0), rates);
+    for action in [&[Action::SpindleWatch(Some(watch))], actions].concat() {
+        schedule.push(Command::new(action, Origin::line(1)));
+    }
+    schedule.finish();
+    schedule.stray().map(|stray| (stray.ordered_rpm, stray.real_rpm))
+}
+
+#[test]
+fn a_watched_spindle_must_have_its_speed_in_time() {
+    let order = [spindle(2000)];
+    // 1000 rpm/s: 1500 after 1.5 s, 1900 after 1.9; 5 % are 100 rpm.
+    assert_eq!(watched(&order, 1500, [50, 100], 50), Some((2000.0, 1500.0)));
+    assert_eq!(watched(&order, 1899, [50, 50], 50), Some((2000.0, 1899.0)));
+    assert_eq!(watched(&order, 1900, [50, 50], 50), None);
+    // The widest of Q, R and I counts; with neither R nor I nothing is permitted or not.
+    assert_eq!(watched(&order, 1500, [50, 250], 50), None);
+    assert_eq!(watched(&order, 1500, [50, 100], 500), None);
+    assert_eq!(watched(&order, 0, [50, 0], 0), None);
+    // Nobody looks at a stop, nor at a spindle that a tap leads.
+    assert_eq!(watched(&[spindle(2000), spindle(0)], 1950, [50, 50], 50), None);
+    assert_eq!(watched(&tapping(2000, 2000), 0, [50, 50], 50), None);
+    // Ended, it tells nothing.
+    assert_eq!(watched(&[Action::SpindleWatch(None), spindle(2000)], 0, [50, 50], 50), None);
+}
+
+#[test]
+fn a_watched_spindle_must_follow_the_diameter() {
+    // 120 m/min facing with 0.5 mm/rev from d40 to d2: n·dn a turn is 5·10⁻³·n³... far beyond 1000 rpm/s near the axis, where
+    // the machine's 4000 rpm are asked for.
+    let facing = [surface(120), cut(at(2.0, 0.0), 0.5)];
+    let (ordered, real) = watched(&facing, 5000, [50, 100], 50).expect("it lags");
+    assert!(ordered == 4000.0 && (1000.0..3500.0).contains(&real), "{ordered} {real}");
+    // Turning along Z asks for nothing.
+    assert_eq!(watched(&[surface(120), cut(at(40.0, -20.0), 0.5)], 5000, [50, 100], 50), None);
 }

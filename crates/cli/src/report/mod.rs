@@ -59,6 +59,8 @@ pub(crate) struct Measure {
     /// What it found.
     pub(crate) advice: Vec<Advice>,
     dynamics: Option<Dynamics>,
+    /// The spindle is led with a tap.
+    is_led: bool,
 }
 
 /// What is kept of a program besides its sums.
@@ -91,6 +93,7 @@ impl Measure {
             cutting: None,
             advice: Vec::new(),
             dynamics: rates.dynamics,
+            is_led: false,
         }
     }
 
@@ -114,14 +117,22 @@ impl Measure {
 
     /// What was found about the commands.
     pub(crate) fn warnings(&self) -> impl Iterator<Item = Diagnostic> {
-        self.short_lead_ins.iter().map(|((source, line), short)| {
-            let source = SourceId(*source);
-            let place = Place { line: *line, line_offset: u64::MAX, column: 1, end_column: 1, source };
+        let place = |source: u32, line: u32| {
+            let source = SourceId(source);
+            Place { line, line_offset: u64::MAX, column: 1, end_column: 1, source }
+        };
+        let short_lead_ins = self.short_lead_ins.iter().map(move |((source, line), short)| {
             Diagnostic::warning("thread-start-too-close")
-                .at(place)
+                .at(place(*source, *line))
                 .with("needed", format!("{:.1}", short.needed_mm))
                 .with("has", format!("{:.1}", short.has_mm))
-        })
+        });
+        short_lead_ins.chain(self.schedule.stray().map(|stray| {
+            Diagnostic::alarm("spindle-fluctuation")
+                .at(place(stray.source, stray.line))
+                .with("ordered", format!("{:.0}", stray.ordered_rpm))
+                .with("real", format!("{:.0}", stray.real_rpm))
+        }))
     }
 
     /// Takes the commands whose time is known.
@@ -152,7 +163,11 @@ impl Measure {
             {
                 write_times_row(table, &block);
             }
-            if let Some(dynamics) = &self.dynamics
+            if let Action::RigidTapping(is_led) = &command.action {
+                self.is_led = *is_led;
+            }
+            // A tap that leads the spindle needs no way to get into step.
+            if let Some(dynamics) = self.dynamics.as_ref().filter(|_| !self.is_led)
                 && let Some(short) = ShortLeadIn::of(&command, &timing, dynamics)
             {
                 let line = (command.origin.source, command.origin.line);

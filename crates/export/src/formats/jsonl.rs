@@ -130,6 +130,17 @@ pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
             out.extend_from_slice(br#","other":"#);
             write_fixed(out, ratio.map_or(0, |ratio| ratio.other).into(), 0);
         }
+        Action::RigidTapping(true) => out.extend_from_slice(br#"{"op":"rigid-tapping","on":true"#),
+        Action::RigidTapping(false) => out.extend_from_slice(br#"{"op":"rigid-tapping","on":false"#),
+        Action::SpindleWatch(Some(watch)) => {
+            write_number(out, br#"{"op":"spindle-watch","on":true,"delay_ms":"#, watch.delay_ms);
+            out.extend_from_slice(br#","reached_percent":"#);
+            write_fixed(out, watch.reached_permille.into(), 1);
+            out.extend_from_slice(br#","allowed_percent":"#);
+            write_fixed(out, watch.allowed_permille.into(), 1);
+            write_number(out, br#","band_rpm":"#, watch.band.0);
+        }
+        Action::SpindleWatch(None) => out.extend_from_slice(br#"{"op":"spindle-watch","on":false"#),
         Action::Tool { tool, offset } => {
             write_number(out, br#"{"op":"tool","tool":"#, *tool);
             write_number(out, br#","offset":"#, *offset);
@@ -461,6 +472,18 @@ mod tests {
         let ratio = turnwright_canon::SpeedRatio { spindle: 1, other: -2 };
         let line = line_of(Action::Coupling(Some(ratio)), Origin::line(3));
         assert!(line.starts_with(r#"{"op":"coupling","spindle":1,"other":-2,"#), "{line}");
+        let watch = turnwright_canon::SpindleWatch {
+            delay_ms: 500,
+            reached_permille: 50,
+            allowed_permille: 125,
+            band: Rpm(50),
+        };
+        let line = line_of(Action::SpindleWatch(Some(watch)), Origin::line(3));
+        let expected =
+            r#"{"op":"spindle-watch","on":true,"delay_ms":500,"reached_percent":5,"allowed_percent":12.5,"#;
+        assert!(line.starts_with(expected) && line.contains(r#""band_rpm":50,"#), "{line}");
+        let line = line_of(Action::RigidTapping(true), Origin::line(3));
+        assert!(line.starts_with(r#"{"op":"rigid-tapping","on":true,"#), "{line}");
     }
 
     #[test]

@@ -8,6 +8,7 @@
 //! **Rigid.** With M29 (5210) before the cycle, or always by 5200#0, the tap follows the spindle: the lead is F with feed
 //! per revolution, else F divided by S; on controls whose leads have a sign F is the lead itself, negative for a
 //! left-hand thread, or I gives threads per inch. S must be there, and not above 5241. The spindle stands behind each hole.
+//! While the tap works the spindle is led: it speeds up, slows down and turns round with the axis, so that neither runs ahead.
 //! Q makes pecks, out to the R point (5200#5 at 1) or back by 5213; the way out is faster by 5211 where 5200#4 allows
 //! it. Between M29 and the cycle no axis may move and S may not change; the plane stays as it is.
 //!
@@ -201,7 +202,9 @@ impl Core {
             PeckRetract::Short(settings.peck_return)
         };
         let out_percent = settings.out_percent;
-        self.check_thread_speed(call, Lead(lead))?;
+        // The faster of both ways.
+        let percent = i64::from(out_percent.max(100));
+        self.check_thread_speed(call, Lead(Length::from_nm(lead.nm().saturating_mul(percent) / 100)))?;
         tap.peck = (!peck.is_zero()).then_some(Peck { depth: peck, retract });
         tap.lead = Some(Lead(lead));
         tap.restart = None;

@@ -233,6 +233,8 @@ impl Machining {
             | Action::Thread { .. }
             | Action::Relocate { .. }
             | Action::Coupling(_)
+            | Action::RigidTapping(_)
+            | Action::SpindleWatch(_)
             | Action::PathMode(_)
             | Action::Dwell(_)
             | Action::Coolant(_)
