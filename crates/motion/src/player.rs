@@ -323,8 +323,8 @@ impl Player {
 
     /// Plays what is final of the run; whether it is over.
     fn play_run(&mut self, sink: &mut dyn FnMut(&Sample)) -> bool {
+        self.run.plan();
         loop {
-            self.run.plan();
             let time_s = self.next_s() - self.now_s;
             match self.run.duration_s() {
                 Some(duration) if time_s >= duration => {
@@ -337,6 +337,7 @@ impl Player {
             if self.look_at_panel() {
                 let (feedrate, is_held) = self.panel.cutting();
                 self.run.pace.interrupt(time_s, feedrate, is_held);
+                self.run.plan();
                 continue;
             }
             let settled_s = time_s - 2.0 * self.dynamics.corner_s;

@@ -4,8 +4,7 @@
 //! triangle of acceleration; the corner becomes a curve. Sums are kept in whole numbers, so nothing drifts however
 //! long it runs.
 
-use std::collections::VecDeque;
-
+use crate::dynamics::AXIS_COUNT;
 use crate::leg::Place;
 
 /// Ticks that a corner may take: with more samples a second its time is cut short.
@@ -14,74 +13,95 @@ const TICKS_MAX: usize = 4096;
 /// Whole numbers in a millimetre or degree.
 const GRAIN: f64 = 1e9;
 
-/// A running sum of the last ticks.
-#[derive(Clone, Debug)]
-struct RunningSum {
-    last: VecDeque<[i128; 6]>,
-    sum: [i128; 6],
-}
-
-impl RunningSum {
-    fn standing(ticks: usize, value: [i128; 6]) -> Self {
-        let mut last = VecDeque::with_capacity(ticks);
-        last.extend(std::iter::repeat_n(value, ticks));
-        Self { last, sum: value.map(|value| value * ticks as i128) }
-    }
-
-    fn fill(&mut self, value: [i128; 6]) {
-        self.last.iter_mut().for_each(|last| *last = value);
-        self.sum = value.map(|value| value * self.last.len() as i128);
-    }
-
-    fn next(&mut self, value: [i128; 6]) -> [i128; 6] {
-        if let Some(oldest) = self.last.pop_front() {
-            self.last.push_back(value);
-            for ((sum, value), oldest) in self.sum.iter_mut().zip(value).zip(oldest) {
-                *sum += value - oldest;
-            }
-        }
-        self.sum
-    }
+/// The last ticks of every axis and their sums, once and twice.
+#[derive(Clone, Copy, Debug, Default)]
+struct Slot {
+    once: [i128; AXIS_COUNT],
+    twice: [i128; AXIS_COUNT],
 }
 
 /// Averages places.
 #[derive(Clone, Debug)]
 pub(crate) struct Smoother {
-    ticks: usize,
-    once: RunningSum,
-    twice: RunningSum,
+    last: Vec<Slot>,
+    /// The oldest slot.
+    next: usize,
+    sum: Slot,
+    /// What the sums of a millimetre or degree come to.
+    scale: f64,
+    /// The place where the tool stood.
+    rest: Place,
+    /// What is given out: of an axis that has not moved since, nothing is added up.
+    out: Place,
+    has_moved: [bool; AXIS_COUNT],
 }
 
 impl Smoother {
     /// For corners that take `corner_s` and a tick of `tick_s`.
     pub(crate) fn new(corner_s: f64, tick_s: f64) -> Self {
         let ticks = ((corner_s / tick_s).round() as usize).clamp(1, TICKS_MAX);
-        let zero = [0; 6];
-        Self { ticks, once: RunningSum::standing(ticks, zero), twice: RunningSum::standing(ticks, zero) }
+        Self {
+            last: vec![Slot::default(); ticks],
+            next: 0,
+            sum: Slot::default(),
+            scale: (ticks * ticks) as f64 * GRAIN,
+            rest: [0.0; AXIS_COUNT],
+            out: [0.0; AXIS_COUNT],
+            has_moved: [false; AXIS_COUNT],
+        }
     }
 
     /// The tool stands.
     pub(crate) fn stand(&mut self, place: &Place) {
-        let grains = grains(place);
-        self.once.fill(grains);
-        self.twice.fill(grains.map(|value| value * self.ticks as i128));
+        let ticks = self.last.len() as i128;
+        let at = place.map(grains);
+        let once = at.map(|value| value * ticks);
+        self.last.fill(Slot { once: at, twice: once });
+        self.sum = Slot { once, twice: once.map(|value| value * ticks) };
+        self.rest = *place;
+        self.out = self.sum.twice.map(|sum| float(sum) / self.scale);
+        self.has_moved = [false; AXIS_COUNT];
     }
 
     /// The next tick.
     pub(crate) fn next(&mut self, place: &Place) -> Place {
-        let sum = self.twice.next(self.once.next(grains(place)));
-        let scale = (self.ticks * self.ticks) as f64;
-        sum.map(|sum| sum as f64 / scale / GRAIN)
+        let oldest = &mut self.last[self.next];
+        for axis in 0..AXIS_COUNT {
+            self.has_moved[axis] |= place[axis] != self.rest[axis];
+            if !self.has_moved[axis] {
+                continue;
+            }
+            let value = grains(place[axis]);
+            self.sum.once[axis] += value - std::mem::replace(&mut oldest.once[axis], value);
+            let once = self.sum.once[axis];
+            self.sum.twice[axis] += once - std::mem::replace(&mut oldest.twice[axis], once);
+            self.out[axis] = float(self.sum.twice[axis]) / self.scale;
+        }
+        self.next = if self.next + 1 < self.last.len() { self.next + 1 } else { 0 };
+        self.out
     }
 
     /// Ticks by which a steady motion comes out later.
     pub(crate) const fn delay_ticks(&self) -> usize {
-        self.ticks - 1
+        self.last.len() - 1
     }
 }
 
-fn grains(place: &Place) -> [i128; 6] {
-    place.map(|value| (value * GRAIN).round() as i128)
+/// A place in whole numbers.
+fn grains(value: f64) -> i128 {
+    let grains = value * GRAIN;
+    let rounded = grains + 0.5f64.copysign(grains);
+    // The conversion of long numbers takes long.
+    if rounded.abs() < i64::MAX as f64 { (rounded as i64).into() } else { rounded as i128 }
+}
+
+fn float(sum: i128) -> f64 {
+    if let Ok(sum) = i64::try_from(sum) { sum as f64 } else { float_of_long(sum) }
+}
+
+#[cold]
+fn float_of_long(sum: i128) -> f64 {
+    sum as f64
 }
 
 #[cfg(test)]
@@ -103,6 +123,21 @@ mod tests {
         }
         let expected = 5.0 * 2f64.sqrt() * 0.01 / 6.0;
         assert!((nearest - expected).abs() < 0.02 * expected, "{nearest} {expected}");
+    }
+
+    #[test]
+    fn an_axis_that_starts_late_and_one_far_away_are_averaged_alike() {
+        // Sums of 5 km and 4096 ticks are longer than 64 bits; Z starts when X has long been moving.
+        let mut smoother = Smoother::new(1.0, 1e-5);
+        let far = 5e6;
+        smoother.stand(&[far, far, 0.0, 0.0, 0.0, 0.0]);
+        let mut out = Place::default();
+        for index in 0..30_000 {
+            let (x, z) = (f64::from(index) * 1e-4, f64::from((index - 10_000).max(0)) * 1e-4);
+            out = smoother.next(&[far + x, far + z, 0.0, 0.0, 0.0, 0.0]);
+        }
+        assert!((out[0] - out[1] - 1.0).abs() < 1e-8, "{out:?}");
+        assert!((out[0] - far - 1e-4 * (29_999.0 - 4095.0)).abs() < 1e-8, "{out:?}");
     }
 
     #[test]
