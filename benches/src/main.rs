@@ -15,6 +15,8 @@ mod compare;
 mod cycles;
 mod generate;
 #[cfg(feature = "peers")]
+mod job;
+#[cfg(feature = "peers")]
 mod motion;
 #[cfg(feature = "peers")]
 mod removal;

@@ -104,7 +104,7 @@ fn places(ways: usize, pass: usize, step_mm: f64) -> impl Iterator<Item = Point>
 }
 
 /// A nose with upright sides, from its centre.
-fn finger() -> Result<Outline, String> {
+pub fn finger() -> Result<Outline, String> {
     let (left, right) = (Point::new(0.0, -NOSE_MM), Point::new(0.0, NOSE_MM));
     let (top_left, top_right) = (Point::new(HEIGHT_MM, -NOSE_MM), Point::new(HEIGHT_MM, NOSE_MM));
     let bend = Some(Bend { centre: Point::new(0.0, 0.0), clockwise: false });
@@ -119,7 +119,7 @@ fn finger() -> Result<Outline, String> {
 }
 
 /// An insert of 80 degrees with edges of 12 mm, from its nose centre, its main edge at 95 degrees to the axis.
-fn insert() -> Result<Outline, String> {
+pub fn insert() -> Result<Outline, String> {
     let ray = |degrees: f64, length: f64| {
         let (sine, cosine) = degrees.to_radians().sin_cos();
         Point::new(length * sine, length * cosine)

@@ -43,7 +43,7 @@ pub fn run(name: &str, count: u32) -> Result<(), String> {
 }
 
 /// A program in memory.
-struct Memory(Vec<u8>);
+pub struct Memory(pub Vec<u8>);
 
 impl Environment for Memory {
     fn read(&mut self, _: SourceId, offset: u64, buffer: &mut [u8]) -> Result<usize, ReadFault> {
