@@ -66,12 +66,12 @@ impl Smoother {
     /// The next tick.
     pub(crate) fn next(&mut self, place: &Place) -> Place {
         let oldest = &mut self.last[self.next];
-        for axis in 0..AXIS_COUNT {
-            self.has_moved[axis] |= place[axis] != self.rest[axis];
+        for (axis, value) in place.iter().enumerate() {
+            self.has_moved[axis] |= *value != self.rest[axis];
             if !self.has_moved[axis] {
                 continue;
             }
-            let value = grains(place[axis]);
+            let value = grains(*value);
             self.sum.once[axis] += value - std::mem::replace(&mut oldest.once[axis], value);
             let once = self.sum.once[axis];
             self.sum.twice[axis] += once - std::mem::replace(&mut oldest.twice[axis], once);
