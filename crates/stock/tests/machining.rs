@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use turnwright_canon::{
-    Action, Command, Interpolation, Origin, OtherAxes, RapidPath, Shape, SpindleSpeed, SpindleState, Turn,
+    Action, Command, Coolant, Interpolation, Origin, OtherAxes, RapidPath, Shape, SpindleSpeed, SpindleState,
+    Turn,
 };
 use turnwright_geometry::{Bend, Outline, Point, Segment};
 use turnwright_stock::machining::{Event, EventKind, Obstacle, RapidRates, ToolShape};
@@ -266,6 +267,37 @@ fn threads_are_true_grooves_at_their_lead_and_start() {
     assert_eq!(marks.len(), 1);
     assert_eq!((marks[0].starts.len(), marks[0].passes, marks[0].lead_mm), (2, 2, 2.0));
     near(marks[0].bounds.min.x, 24.0);
+}
+
+#[test]
+fn a_thread_that_ends_in_solid_is_left_through_its_own_groove() {
+    // M50 x 1.5 by 1 mm deep, 15 mm long: it ends half a turn behind the half-plane that is looked at, where the section
+    // is still solid. X out is through the groove that the insert stands in.
+    let begin = [tool(3), spindle(SpindleState::Clockwise), rapid(54., 3.), rapid(48., 3.)];
+    let solid = thread(48., -14.25, 1.5, 0);
+    let leaving = |way: Vec<Action>| {
+        let mut machining = lathe();
+        let events = run(&mut machining, &[begin.to_vec(), vec![solid.clone()], way].concat());
+        (machining, events)
+    };
+    let grooves = leaving(Vec::new()).0.section().volume_mm3();
+    let wait = Action::Coolant(Coolant::On);
+    for way in [vec![rapid(54., -14.25)], vec![straight(54., -14.25)], vec![wait, rapid(54., -14.25)]] {
+        let (machining, events) = leaving(way);
+        assert_eq!(events, []);
+        near(machining.section().volume_mm3(), grooves);
+    }
+    // Along Z it leads through the crests, and so does X out a little further on.
+    let (_, events) = leaving(vec![rapid(48., 3.)]);
+    assert_eq!(events.iter().map(|event| event.kind).collect::<Vec<_>>(), [EventKind::RapidIntoStock]);
+    near(events[0].place.x, 24.0);
+    let mut beside = lathe();
+    let next = [solid.clone(), rapid(54., -14.25), rapid(54., -30.), rapid(48., -30.)];
+    let events = run(&mut beside, &[begin.to_vec(), next.to_vec()].concat());
+    assert_eq!(events.iter().map(|event| event.origin.line).collect::<Vec<_>>(), [8]);
+    // One move later the groove is no excuse any more.
+    let (_, events) = leaving(vec![rapid(54., -14.25), rapid(48., -14.25)]);
+    assert_eq!(events.iter().map(|event| event.origin.line).collect::<Vec<_>>(), [7]);
 }
 
 #[test]

@@ -229,7 +229,7 @@ impl PartRun {
             return None;
         }
         if matches!(command.action, Action::Thread { .. }) && self.plain.is_none() {
-            self.plain = Some(Box::new(self.machining.without_guards()));
+            self.plain = Some(Box::new(self.machining.only_cutting()));
         }
         match command.action {
             Action::Rapid { .. } | Action::Feed { .. } | Action::Thread { .. } => self.moves += 1,

@@ -11,7 +11,8 @@
 //!   hits it takes nothing.
 //! * A thread is cut in the half-plane that passes the tool when the spindle stands at zero: the insert at rest once a
 //!   turn, in phase with its start angle, so that the section shows true grooves, several starts included, and their
-//!   volume is that of the helix.
+//!   volume is that of the helix. Where a thread ends in solid, the insert stands in its own groove, whatever half-plane
+//!   that end lies in: a rapid from there hits only what the insert did not fill when it stood still.
 //! * What loses its hold of the chuck side falls and is gone.
 //!
 //! Invariant: memory does not grow with the number of commands, but only with the section's edges.
@@ -89,6 +90,8 @@ pub struct Machining {
     unknown: Option<u32>,
     spindle: SpindleState,
     phase: Phase,
+    /// Where a thread has just ended, until the next move.
+    thread_end: Option<Point>,
     threads: ThreadMarks,
     sweep: Sweep,
 }
@@ -112,6 +115,7 @@ impl Machining {
             unknown: None,
             spindle: SpindleState::Stop,
             phase: Phase::default(),
+            thread_end: None,
             threads: ThreadMarks::default(),
             sweep: Sweep::new(),
         }
@@ -147,10 +151,13 @@ impl Machining {
         &mut self.guards
     }
 
-    /// The same with nothing guarded.
+    /// The same with nothing guarded, nothing in the way and tools that only cut: what is left of the stock comes out
+    /// the same, and sooner.
     #[must_use]
-    pub fn without_guards(&self) -> Self {
-        Self { guards: Vec::new(), ..self.clone() }
+    pub fn only_cutting(&self) -> Self {
+        let mut same = Self { guards: Vec::new(), obstacles: Vec::new(), ..self.clone() };
+        same.tools.values_mut().for_each(|tool| tool.body = None);
+        same
     }
 
     /// What is left.
@@ -184,11 +191,14 @@ impl Machining {
         if !matches!(command.action, Action::Thread { .. }) {
             self.phase = Phase::default();
         }
+        let is_move =
+            command.action.end_point().is_some() || matches!(command.action, Action::Relocate { .. });
+        let groove = if is_move { self.thread_end.take() } else { None };
         match &command.action {
             Action::Rapid { path, .. } => {
                 let mut removed = Removed::default();
                 for way in rapid_ways(point(from), point(self.at), *path, self.rates) {
-                    removed = removed.and(self.rapid(&way, &mut teller));
+                    removed = removed.and(self.rapid(&way, groove, &mut teller));
                 }
                 removed
             }
@@ -248,14 +258,23 @@ impl Machining {
         }
     }
 
-    fn rapid(&mut self, way: &Segment, teller: &mut Teller<'_>) -> Removed {
+    /// A rapid, out of the groove of a thread that ended at a place when one did.
+    fn rapid(&mut self, way: &Segment, groove: Option<Point>, teller: &mut Teller<'_>) -> Removed {
         let Some(tool) = shape(&self.tools, self.tool, &mut self.unknown, None) else {
             return Removed::default();
         };
         self.sweep.along(&tool.cutting, way);
         let mut removed = Removed::default();
-        if let Some(contact) = deep(self.section.touches(&self.sweep)) {
-            let place = || first_touch(&self.section, &tool.cutting, way);
+        let mut contact = deep(self.section.touches(&self.sweep));
+        let mut grooved = None;
+        if let (Some(_), Some(end)) = (contact, groove) {
+            let mut section = self.section.clone();
+            section.cut(Sweep::new().rest(&tool.cutting, end));
+            contact = deep(section.touches(&self.sweep));
+            grooved = Some(section);
+        }
+        if let Some(contact) = contact {
+            let place = || first_touch(grooved.as_ref().unwrap_or(&self.section), &tool.cutting, way);
             teller.tell(EventKind::RapidIntoStock, Some(contact), place);
             removed = take(&mut self.section, &mut self.guards, &self.sweep);
         }
@@ -326,6 +345,7 @@ impl Machining {
             let cut = ThreadCut { tool: number, lead_mm: lead_mm.0, hand };
             self.threads.note(cut, *start_angle, &all, bounds);
         }
+        self.thread_end = Some(all.end);
         self.judge(&removed, &all, teller);
         removed
     }

@@ -6,6 +6,9 @@
 //!
 //! How to mend it: turn slower, set the limit (G50 S) lower, or grip harder where the work allows it.
 //!
+//! The last third is the cut's. Whether it needs more is not judged: how much of its force the grip can hold against hangs on
+//! the friction between jaws and work, which no setup knows.
+//!
 //! A speed above `rpm_max` is [`super::chuck_speed`]'s to tell. Jaws that grip in a bore are not judged: speed presses them
 //! outwards.
 
