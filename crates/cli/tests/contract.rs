@@ -145,6 +145,35 @@ fn a_trace_is_json_lines_into_a_pipe_and_ends_with_its_alarm() {
 }
 
 #[test]
+fn a_section_of_too_many_edges_has_its_drawing_but_no_solid() {
+    // A point without a radius goes along a wave of short straight lines: each is an edge of the section.
+    let wave = |rounds: u32| {
+        format!(
+            "O1\nT0101\nG97 S500 M3\nG0 X48. Z6.\nG1 Z0 F0.1\n#1=0\nWHILE[#1LT{rounds}]DO1\nG1 U0.004 W-0.005\n\
+             U-0.004 W-0.005\n#1=#1+1\nEND1\nG0 X60.\nZ5.\nM30\n"
+        )
+    };
+    let setup = "[stock]\ndiameter_mm = 50\nlength_mm = 120\n[tools.1]\nkind = \"turning\"\nnose_radius_mm = 0\n\
+        outline = [{ x = 0, z = 0 }, { x = 4, z = -4 }, { x = 4, z = 4 }]\n";
+    let folder = Folder::new();
+    let files = |rounds| {
+        let (name, out) = (format!("wave{rounds}.nc"), folder.path(&format!("out{rounds}")));
+        folder.file(&format!("wave{rounds}.toml"), setup);
+        let program = folder.file(&name, wave(rounds));
+        let ran = turnwright(&["run", &program, "--out", &out.display().to_string(), "--no-3d"]);
+        assert_eq!(ran.status, 0, "{}", ran.err);
+        (ran.err.contains("T360"), support::names(&out))
+    };
+    let (is_told, names) = files(9_990);
+    assert!(!is_told && names.iter().any(|name| name == "part.step"), "{names:?}");
+    let (is_told, names) = files(10_010);
+    assert!(is_told && names.iter().any(|name| name == "part.dxf"), "{names:?}");
+    for solid in ["part.step", "part.stl", "part.glb"] {
+        assert!(names.iter().all(|name| name != solid), "{names:?}");
+    }
+}
+
+#[test]
 fn run_reports_and_writes_its_folder() {
     let folder = Folder::new();
     let program = folder.file("part.nc", ALARMS);

@@ -427,7 +427,9 @@ impl Core {
         let keeps_vector = matches!(cycle.moves, CycleMoves::ThreadOnce(_));
         if self.cycle_moves >= self.cycle_moves_end {
             let diagnostic = Diagnostic::error("cycle-move-limit").at(self.block_place());
-            return Err(self.finish(diagnostic.with("limit", limits::CYCLE_MOVES_MAX as i64)));
+            let is_of_all = self.cycle_moves >= limits::RUN_MOVES_MAX;
+            let limit = if is_of_all { limits::RUN_MOVES_MAX } else { limits::CYCLE_MOVES_MAX };
+            return Err(self.finish(diagnostic.with("limit", limit as i64)));
         }
         let origin = self.cycle_origin(&step, next.as_ref());
         if let Some(cycle) = &mut self.active {
@@ -476,5 +478,53 @@ impl ActiveCycle {
             }
             (None, StopUnit::Pass | StopUnit::Hole) => false,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use turnwright_control::{Control, Setup};
+    use turnwright_diagnostics::{Argument, SourceId};
+
+    use crate::limits::RUN_MOVES_MAX;
+    use crate::{Environment, Interpreter, Options, ReadFault, Step};
+
+    struct Text(&'static [u8]);
+
+    impl Environment for Text {
+        fn read(&mut self, _: SourceId, offset: u64, buffer: &mut [u8]) -> Result<usize, ReadFault> {
+            let rest = self.0.get(offset as usize..).unwrap_or_default();
+            let count = rest.len().min(buffer.len());
+            buffer[..count].copy_from_slice(&rest[..count]);
+            Ok(count)
+        }
+
+        fn skips(&self, _: u8) -> bool {
+            false
+        }
+    }
+
+    #[test]
+    fn all_cycles_together_make_as_many_moves_as_allowed_and_not_one_more() {
+        // A turning cycle makes four moves.
+        let alarm = |made_before: u64| {
+            let mut text = Text(b"O1\nG97 S500 M3\nG0 X50. Z2.\nG90 X40. Z-20. F0.2\nM30\n");
+            let control = Control::load("fanuc-0i-tf").expect("a control");
+            let mut interpreter =
+                Interpreter::new(control, &Setup::default(), SourceId(0), Options::default())
+                    .expect("a start");
+            interpreter.core.cycle_moves = made_before;
+            loop {
+                match interpreter.step(&mut text) {
+                    Step::Alarm(alarm) => return Some(alarm),
+                    Step::End => return None,
+                    Step::Emit(_) | Step::NeedSync(_) => {}
+                }
+            }
+        };
+        assert_eq!(alarm(RUN_MOVES_MAX - 4), None);
+        let alarm = alarm(RUN_MOVES_MAX - 3).expect("an alarm");
+        assert_eq!(alarm.key, "cycle-move-limit");
+        assert_eq!(alarm.arguments, [("limit", Argument::from(RUN_MOVES_MAX as i64))]);
     }
 }

@@ -31,6 +31,21 @@ pub const PART_MOVES_MAX: u64 = 5_000_000;
 /// Slabs of a section, some hundred bytes each.
 pub const SLABS_MAX: usize = 200_000;
 
+/// What a program may ask of the machining.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PartLimits {
+    /// Moves that are cut.
+    pub moves: u64,
+    /// Slabs of the section; looked at every [`COMMANDS_PER_LOOK`] commands.
+    pub slabs: usize,
+}
+
+impl Default for PartLimits {
+    fn default() -> Self {
+        Self { moves: PART_MOVES_MAX, slabs: SLABS_MAX }
+    }
+}
+
 /// Findings of one kind; more of the same say nothing new.
 const FINDINGS_MAX: usize = 10;
 
@@ -47,7 +62,7 @@ pub const FIGURE_REST_MM: f64 = 0.05;
 const ROUNDING_MM: f64 = 1e-6;
 
 /// Commands between two looks at the size of the section.
-const COMMANDS_PER_LOOK: u64 = 1024;
+pub const COMMANDS_PER_LOOK: u64 = 1024;
 
 /// A program that is being cut out of its stock.
 #[derive(Clone, Debug)]
@@ -56,6 +71,7 @@ pub struct PartRun {
     /// The same without its threads, from the first of them on.
     plain: Option<Box<Machining>>,
     stock: Outline,
+    limits: PartLimits,
     moves: u64,
     commands: u64,
     is_full: bool,
@@ -178,6 +194,7 @@ impl PartRun {
             machining,
             plain: None,
             stock,
+            limits: PartLimits::default(),
             moves: 0,
             commands: 0,
             is_full: false,
@@ -190,6 +207,12 @@ impl PartRun {
             watches: Vec::new(),
             target: None,
         }))
+    }
+
+    /// Ends the machining elsewhere than at [`PART_MOVES_MAX`] and [`SLABS_MAX`].
+    #[must_use]
+    pub fn with_limits(self, limits: PartLimits) -> Self {
+        Self { limits, ..self }
     }
 
     /// Looks whether the figures that the program finishes are cut too deep, or keep material.
@@ -228,13 +251,18 @@ impl PartRun {
         if self.is_full {
             return None;
         }
+        let is_move =
+            matches!(command.action, Action::Rapid { .. } | Action::Feed { .. } | Action::Thread { .. });
+        if is_move && self.moves == self.limits.moves {
+            self.end_at(command);
+            return None;
+        }
         if matches!(command.action, Action::Thread { .. }) && self.plain.is_none() {
             self.plain = Some(Box::new(self.machining.only_cutting()));
         }
-        match command.action {
-            Action::Rapid { .. } | Action::Feed { .. } | Action::Thread { .. } => self.moves += 1,
-            Action::Tool { tool, .. } => self.notebook.tool = tool,
-            _ => {}
+        self.moves += u64::from(is_move);
+        if let Action::Tool { tool, .. } = command.action {
+            self.notebook.tool = tool;
         }
         let Self { machining, notebook, edges, history, commands, watches, .. } = self;
         for (watch, guard) in watches.iter().zip(machining.guards_mut()) {
@@ -271,13 +299,18 @@ impl PartRun {
         }
         self.commands += 1;
         if self.commands.is_multiple_of(COMMANDS_PER_LOOK)
-            && (self.moves >= PART_MOVES_MAX || self.machining.section().slab_count() > SLABS_MAX)
+            && self.machining.section().slab_count() > self.limits.slabs
         {
-            self.is_full = true;
-            let note = Diagnostic::new(Severity::Note, "part-incomplete");
-            self.notebook.findings.push(note.at(place_of(&command.origin)));
+            self.end_at(command);
         }
         Some(removed)
+    }
+
+    /// Cuts nothing more, and says so.
+    fn end_at(&mut self, command: &Command) {
+        self.is_full = true;
+        let note = Diagnostic::new(Severity::Note, "part-incomplete");
+        self.notebook.findings.push(note.at(place_of(&command.origin)));
     }
 
     /// Whether nothing more is cut, because there was too much of it.

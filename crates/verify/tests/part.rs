@@ -9,7 +9,7 @@ use turnwright_control::Setup;
 use turnwright_diagnostics::Severity;
 use turnwright_stock::machining::RapidRates;
 use turnwright_verify::Inference;
-use turnwright_verify::part::{Part, PartRun};
+use turnwright_verify::part::{COMMANDS_PER_LOOK, Part, PartLimits, PartRun};
 
 const RATES: RapidRates = RapidRates { x_mm_per_min: 12_000.0, z_mm_per_min: 16_000.0 };
 
@@ -149,4 +149,53 @@ fn a_thread_leaves_the_surface_that_it_lies_in() {
     let plain = part(&format!("{turning}M30\n"), control, &given);
     assert_eq!(plain.plain.volume_mm3(), plain.section.volume_mm3());
     assert!((plain.plain.volume_mm3() - threaded.plain.volume_mm3()).abs() < 1e-6);
+}
+
+/// The part of a program that is no longer cut at these limits.
+fn limited(text: &str, limits: PartLimits) -> Part {
+    let words = "[stock]\ndiameter_mm = 50\nlength_mm = 60\n[tools.1]\nkind = \"turning\"\nnose_radius_mm = 0\n\
+        outline = [{ x = 0, z = 0 }, { x = 5, z = 0 }, { x = 5, z = 0.01 }, { x = 0, z = 0.01 }]\n";
+    let setup = Setup::parse(words).expect("a setup");
+    let run = support::run(text, "fanuc-0i-tf", &setup);
+    assert_eq!(run.alarm, None);
+    let part = PartRun::new(&setup, &setup, run.start, RATES).expect("a setup").expect("a stock");
+    let mut part = part.with_limits(limits);
+    for command in &run.commands {
+        part.add(command);
+    }
+    part.finish()
+}
+
+fn ends(part: &Part) -> Vec<u32> {
+    let ends = part.findings.iter().filter(|finding| finding.key == "part-incomplete");
+    ends.map(|finding| finding.place.expect("a place").line).collect()
+}
+
+#[test]
+fn as_many_moves_as_allowed_are_cut_and_one_more_is_not() {
+    // Four moves; the last, in line 6, cuts off the axis.
+    let text = "O1\nT0101\nG97 S500 M3\nG0 X52. Z-1.\nG1 X50. F0.1\nX46.\nG0 X52.\nM30\n";
+    let at = |moves| limited(text, PartLimits { moves, ..PartLimits::default() });
+    let whole = at(4);
+    assert_eq!(ends(&whole), []);
+    let short = at(3);
+    assert_eq!(ends(&short), [7]);
+    assert_eq!(short.section.volume_mm3(), whole.section.volume_mm3());
+    let shorter = at(2);
+    assert_eq!(ends(&shorter), [6]);
+    assert_eq!(shorter.section.area_mm2(), 25.0 * 60.0);
+}
+
+#[test]
+fn a_section_may_have_as_many_slabs_as_allowed_and_not_one_more() {
+    // As many grooves as make the look at the section fall behind the last of them.
+    let grooves = COMMANDS_PER_LOOK / 3;
+    let text = format!(
+        "O1\nT0101\nG97 S500 M3\nG0 X52. Z-1.\n#1=0\nWHILE[#1LT{grooves}]DO1\nG0 Z[-1.-#1*0.1]\nG1 X48. F0.1\n\
+         X50.2\n#1=#1+1\nEND1\nG4 X1.\nG4 X1.\nG4 X1.\nG4 X1.\nG4 X1.\nG4 X1.\nM30\n"
+    );
+    let slabs = limited(&text, PartLimits::default()).section.slab_count();
+    assert!(slabs > 2 * grooves as usize, "{slabs}");
+    let at = |slabs| ends(&limited(&text, PartLimits { slabs, ..PartLimits::default() })).len();
+    assert_eq!((at(slabs), at(slabs - 1)), (0, 1));
 }

@@ -37,7 +37,7 @@ impl RunReport {
         speech: Speech,
         has_solid: bool,
     ) -> String {
-        let (program_lines, is_whole) = program_lines(text);
+        let (program_lines, is_whole) = program_lines(text.lines(), REPORT_LINES_MAX, REPORT_BYTES_MAX);
         let mut facts = self.page_facts();
         if !is_whole {
             facts.push(fact("program", |speech| {
@@ -204,15 +204,38 @@ fn fact(key: &str, value: impl Fn(Speech) -> String) -> Fact {
 }
 
 /// The program's lines as far as a page can hold them, and whether that is all.
-fn program_lines(text: &ProgramText) -> (Vec<String>, bool) {
+fn program_lines<L: AsRef<[u8]>>(
+    lines: impl Iterator<Item = L>,
+    lines_max: usize,
+    bytes_max: usize,
+) -> (Vec<String>, bool) {
     let mut shown = Vec::new();
     let mut bytes = 0;
-    for line in text.lines() {
-        bytes += line.len();
-        if shown.len() >= REPORT_LINES_MAX || bytes > REPORT_BYTES_MAX {
+    for line in lines {
+        bytes += line.as_ref().len();
+        if shown.len() >= lines_max || bytes > bytes_max {
             return (shown, false);
         }
-        shown.push(decode(&line));
+        shown.push(decode(line.as_ref()));
     }
     (shown, true)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_holds_so_many_lines_and_bytes_and_not_one_more() {
+        let text = ["G0 X50.", "Z2.", "M30"];
+        let held = |lines, bytes| {
+            let (shown, is_whole) = program_lines(text.iter(), lines, bytes);
+            (shown.len(), is_whole)
+        };
+        assert_eq!(held(3, 13), (3, true));
+        assert_eq!(held(2, 13), (2, false));
+        assert_eq!(held(3, 12), (2, false));
+        assert_eq!(held(0, 13), (0, false));
+        assert_eq!(program_lines(text[..0].iter(), 0, 0), (Vec::new(), true));
+    }
 }
