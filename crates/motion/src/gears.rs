@@ -56,8 +56,8 @@ impl Gears {
         *self.gears.get(place)?
     }
 
-    /// The gear that an auxiliary function changes to.
-    pub(crate) fn of_code(&self, code: u32) -> Option<usize> {
+    /// The gear that an auxiliary function changes to, by its place.
+    pub fn of_code(&self, code: u32) -> Option<usize> {
         self.all().position(|gear| gear.code == code)
     }
 
@@ -65,6 +65,14 @@ impl Gears {
     pub(crate) fn for_speed(&self, rpm: f64) -> Option<usize> {
         let last = self.all().count().checked_sub(1)?;
         Some(self.all().position(|gear| rpm <= gear.rpm_max).unwrap_or(last))
+    }
+
+    /// The fastest that the spindle turns in a gear, or, where the machine chooses it, in any, rpm.
+    pub fn rpm_max(&self, place: usize) -> Option<f64> {
+        match self.selection {
+            GearSelection::ByCode => self.get(place).map(|gear| gear.rpm_max),
+            GearSelection::BySpeed => self.all().map(|gear| gear.rpm_max).reduce(f64::max),
+        }
     }
 
     /// Whether a machine can have them.

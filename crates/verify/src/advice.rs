@@ -100,6 +100,8 @@ struct SurfaceOrder {
 #[derive(Clone, Debug)]
 pub struct Advisor {
     rates: MachineRates,
+    /// The gear of the spindle, by its place.
+    gear: usize,
     tools: BTreeMap<u32, Tool>,
     tool: u32,
     savings: BTreeMap<(&'static str, u32, u32), Saving>,
@@ -116,6 +118,7 @@ impl Advisor {
     pub fn new(setup: &Setup, rates: MachineRates) -> Self {
         Self {
             rates,
+            gear: 0,
             tools: setup.tools().unwrap_or_default(),
             tool: 0,
             savings: BTreeMap::new(),
@@ -155,7 +158,7 @@ impl Advisor {
             (Action::Spindle { state, speed, rpm_max }, _) => {
                 self.end_pass();
                 self.interrupt();
-                let machine_max = self.rates.rpm_max.map_or(RPM_FENCE, |rpm| f64::from(rpm.0));
+                let machine_max = self.machine_rpm_max();
                 self.surface = match (state, speed, rpm_max) {
                     (SpindleState::Stop, ..) => None,
                     // What the machine itself cannot do is no advice.
@@ -168,6 +171,11 @@ impl Advisor {
                     }
                     _ => None,
                 };
+            }
+            (Action::Auxiliary { code }, _) => {
+                self.gear = self.rates.gears.of_code(*code).unwrap_or(self.gear);
+                self.end_pass();
+                self.interrupt();
             }
             (Action::PathMode(_) | Action::Message(_) | Action::Output(_), _) => return,
             _ => {
@@ -278,11 +286,17 @@ impl Advisor {
         }
     }
 
+    /// The fastest that the spindle turns in its gear.
+    fn machine_rpm_max(&self) -> f64 {
+        let machine_max = self.rates.rpm_max.map_or(RPM_FENCE, |rpm| f64::from(rpm.0));
+        self.rates.gears.rpm_max(self.gear).map_or(machine_max, |rpm| rpm.min(machine_max))
+    }
+
     /// A cut all of which is turned at the clamp of the surface speed.
     fn judge_clamp(&mut self, feed: Feed, timing: &Timing, to: Position<WorkTip>, seconds: f64) {
         let Some(order) = self.surface.filter(|_| matches!(feed, Feed::PerRevolution(_))) else { return };
         let thickest_mm = timing.from.x.to_mm().abs().max(to.x.to_mm().abs());
-        let machine_max = self.rates.rpm_max.map_or(RPM_FENCE, |rpm| f64::from(rpm.0));
+        let machine_max = self.machine_rpm_max();
         let wanted = if thickest_mm > 0.0 { order.rpm_mm / thickest_mm } else { f64::INFINITY };
         let possible = wanted.min(machine_max);
         if possible > order.rpm_max * 1.1 {

@@ -3,7 +3,7 @@
 mod support;
 
 use turnwright_control::Setup;
-use turnwright_motion::{MachineRates, Schedule};
+use turnwright_motion::{Gear, Gears, MachineRates, Schedule};
 use turnwright_stock::machining::RapidRates;
 use turnwright_verify::advice::{Advice, Advisor};
 use turnwright_verify::part::PartRun;
@@ -18,10 +18,13 @@ fn setup() -> Setup {
 
 /// Key, line and seconds of the advice on a program for a bar of 50 by 80 mm.
 fn advised(program: &str) -> Vec<(&'static str, u32, f64)> {
+    advised_on(program, MachineRates::default())
+}
+
+fn advised_on(program: &str, rates: MachineRates) -> Vec<(&'static str, u32, f64)> {
     let setup = setup();
     let run = support::run(program, "fanuc-0i-tf", &setup);
     assert_eq!(run.alarm, None);
-    let rates = MachineRates::default();
     let rapid = RapidRates { x_mm_per_min: rates.rapid_x_mm_per_min, z_mm_per_min: rates.rapid_z_mm_per_min };
     let mut part = PartRun::new(&setup, &setup, run.start, rapid).expect("a setup").expect("a stock");
     let mut schedule = Schedule::new(run.start, rates);
@@ -91,8 +94,14 @@ fn a_clamp_below_what_the_machine_can_is_told_at_its_block() {
     // 250 m/min on 46 mm ask for 1730 rpm.
     assert_eq!(keys(&cut("1000")), [("advice-speed-clamp", 3)]);
     assert_eq!(keys(&cut("2000")), []);
-    // What the machine cannot do is not asked for.
+    // What the machine cannot do is not asked for, nor what its gear cannot.
     assert_eq!(keys(&cut("9000").replace("S250", "S900")), []);
+    let gear = |code, rpm_max| Gear { code, rpm_min: 0.0, rpm_max, ramp_rpm_per_s: 1000.0 };
+    let gears = Gears::new([gear(41, 900.0), gear(42, 4000.0)]);
+    let rates = MachineRates { gears, ..MachineRates::default() };
+    assert!(advised_on(&cut("1000"), rates).is_empty());
+    let in_second = cut("1000").replace("G50", "M42\nG50");
+    assert_eq!(advised_on(&in_second, rates)[0].0, "advice-speed-clamp");
 }
 
 #[test]
