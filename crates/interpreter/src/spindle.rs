@@ -129,8 +129,7 @@ impl Core {
         if self.machine_limits.chooses_gear {
             let limits = &self.settings.gear_rpm_max[..self.machine_limits.gears.iter().flatten().count()];
             // A gear without a limit of its own reaches whatever the spindle does.
-            let of_gears = limits.iter().copied().collect::<Option<Vec<_>>>();
-            let most = of_gears.and_then(|limits| limits.into_iter().max());
+            let most = limits.iter().try_fold(Rpm(0), |most, limit| limit.map(|limit| most.max(limit)));
             return [self.settings.rpm_max, most].into_iter().flatten().min();
         }
         let of_gear = self.settings.gear_rpm_max[usize::from(self.modal.gear - 1)];

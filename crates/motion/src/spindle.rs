@@ -204,6 +204,7 @@ impl Spindle {
     /// Nothing is asked for until the next order: the spindle is held at an angle.
     pub(crate) fn stop(&mut self) {
         self.order = Order::Constant(0.0);
+        self.given = (SpindleState::Stop, SpindleSpeed::Constant(Rpm(0)), None);
         self.aim(0.0);
     }
 

@@ -2,8 +2,8 @@
 
 use turnwright_canon::{Action, Command, Origin, Shape, SpindleSpeed, SpindleState, SpindleWatch};
 use turnwright_motion::{
-    Arrival, Clock, Dynamics, Gear, GearSelection, Gears, Kind, MachineRates, Panel, Player, Sample,
-    Schedule, SpeedWait, Timing,
+    Arrival, Clock, Dynamics, Gear, GearSelection, Gears, Kind, MachineRates, Orientation, Panel, Player,
+    Sample, Schedule, SpeedWait, Timing,
 };
 use turnwright_units::{
     Angle, Feed, FeedPerRevolution, Lead, Length, Position, Radius, Rpm, SurfaceSpeed, WorkTip,
@@ -87,6 +87,15 @@ fn a_gear_holds_the_speed_and_has_its_own_ramp() {
     // Gear 1 gives 800 of the 2000: 1.6 s. To gear 2: down 1.6, change 1.5, up to 2000 2.0. The second M42 changes
     // nothing, an M code like any other. Gear 2 turns 600 where 300 are asked for: 1.4 down. To standstill 0.6.
     near(&seconds, &[1.6, 5.1, 0.2, 1.4, 0.6]);
+}
+
+#[test]
+fn a_spindle_that_was_oriented_stands_through_a_change_of_gear() {
+    let orientation = Some(Orientation { code: 19, seconds: 0.4 });
+    let actions = [spindle(500), m(19), m(42), cut(at(40.0, -1.0), 0.1)];
+    let timings = timed(MachineRates { orientation, ..geared() }, &actions);
+    // Down from 500 at 500 rpm/s and to the angle; the change alone; nothing turns for the cut.
+    near(&[timings[1].seconds, timings[2].seconds, timings[3].seconds], &[1.4, 1.5, 0.0]);
 }
 
 #[test]
