@@ -104,9 +104,14 @@ impl ProgramText {
         }
     }
 
+    /// The bytes behind an offset, as many as a line may have.
+    fn line_room(&self, offset: u64) -> usize {
+        usize::try_from(self.len().saturating_sub(offset)).unwrap_or(usize::MAX).min(LINE_BYTES_MAX)
+    }
+
     /// The first bytes of the text, as many as a line may have.
     pub(crate) fn head(&self) -> Vec<u8> {
-        let mut bytes = vec![0; LINE_BYTES_MAX];
+        let mut bytes = vec![0; self.line_room(0)];
         let count = self.read_at(0, &mut bytes).unwrap_or(0);
         bytes.truncate(count);
         bytes
@@ -114,7 +119,7 @@ impl ProgramText {
 
     /// The bytes of the line that starts at an offset, without its end; the head of a very long one.
     pub(crate) fn line_at(&self, offset: u64) -> Vec<u8> {
-        let mut bytes = vec![0; LINE_BYTES_MAX];
+        let mut bytes = vec![0; self.line_room(offset)];
         let mut length = 0;
         while length < bytes.len() {
             match self.read_at(offset + length as u64, &mut bytes[length..]) {
@@ -195,8 +200,9 @@ impl<'a> Lines<'a> {
         self.window.drain(..self.at);
         self.at = 0;
         let kept = self.window.len();
-        self.window.resize(kept + LINE_BYTES_MAX, 0);
-        let read = self.text.read_at(self.base + kept as u64, &mut self.window[kept..]).unwrap_or(0);
+        let from = self.base + kept as u64;
+        self.window.resize(kept + self.text.line_room(from), 0);
+        let read = self.text.read_at(from, &mut self.window[kept..]).unwrap_or(0);
         self.window.truncate(kept + read);
         self.is_last = read == 0;
     }

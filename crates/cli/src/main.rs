@@ -26,12 +26,12 @@ mod table;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches};
 
 use crate::arguments::Arguments;
 
 fn main() -> ExitCode {
-    match Arguments::try_parse() {
+    match arguments() {
         Ok(arguments) => fault::guarded(arguments).into(),
         Err(error) => {
             // A help text that nobody reads to its end is no fault.
@@ -39,4 +39,14 @@ fn main() -> ExitCode {
             ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
         }
     }
+}
+
+/// What was asked for.
+fn arguments() -> Result<Arguments, clap::Error> {
+    let mut command = Arguments::command();
+    let mut matches = command.try_get_matches_from_mut(std::env::args_os())?;
+    let arguments = Arguments::from_arg_matches_mut(&mut matches).map_err(|error| error.format(&mut command));
+    // Taking the description of every command apart would take a good part of a short run.
+    std::mem::forget(command);
+    arguments
 }

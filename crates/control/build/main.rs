@@ -15,8 +15,11 @@ fn main() {
     let mut machines = "pub(crate) const MACHINES: &[(&str, &str)] = &[\n".to_string();
     for file in files(&data.join("machines")) {
         let name = file.file_stem().expect("a file name").to_string_lossy().into_owned();
-        let path = fs::canonicalize(&file).expect("an existing file");
-        machines.push_str(&format!("    ({name:?}, include_str!({:?})),\n", path.display().to_string()));
+        println!("cargo::rerun-if-changed={}", file.display());
+        let text = fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+        // Remarks are for people: nobody else is to read them at every start.
+        let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
+        machines.push_str(&format!("    ({name:?}, {:?}),\n", lines.join("\n")));
     }
     machines.push_str("];\n");
     let questions = tables::read(&data.join("policies.toml"));

@@ -119,7 +119,11 @@ pub(crate) fn run(options: &Check, printer: &Printer) -> Result<Status, Fault> {
     let mut out = io::stdout().lock();
     let task = Task { options, printer, shows_notes: candidates.len() == 1 };
     for batch in candidates.chunks(BATCH) {
-        let checked: Vec<Checked> = batch.par_iter().map(|one| check(one, &task)).collect();
+        let checked: Vec<Checked> = match batch {
+            // One program needs no helpers, and they take longer to start than most programs to check.
+            [one] => vec![check(one, &task)],
+            _ => batch.par_iter().map(|one| check(one, &task)).collect(),
+        };
         for one in checked {
             count.add(one.count);
             results.extend(one.results);
