@@ -366,10 +366,10 @@ test("where several cuts are shown as one the page says so, and each of their li
 
 test("a long program: the section follows at once as far as it is known, and exactly when the hand rests", async () => {
   const waves = Array.from({ length: 12 }, (_, pass) => ["G0 X52. Z1.", `G1 X${48 - pass} F0.2`,
-    ...Array.from({ length: 1500 }, (_, n) => `X${(48 - pass + 0.5 * Math.sin(n / 30)).toFixed(3)} Z${(-n / 50).toFixed(3)}`), "G0 X60."].join("\n"));
+    ...Array.from({ length: 1700 }, (_, n) => `X${(48 - pass + 0.5 * Math.sin(n / 30)).toFixed(3)} Z${(-n / 50).toFixed(3)}`), "G0 X60."].join("\n"));
   const long = reportOf("long", DRAWN.replace(/G0 X52[^]*M30/, `${waves.join("\n")}\nM30`));
   await open(long);
-  assert.ok((await page.evaluate(() => turnwright.steps)) > 18000);
+  assert.ok((await page.evaluate(() => turnwright.steps)) > 20000);
   // Between two moments, far from both.
   const shown = () => page.evaluate(() => document.getElementById("layer-stock").toDataURL());
   await page.evaluate(() => turnwright.goTo(9000));
@@ -377,6 +377,11 @@ test("a long program: the section follows at once as far as it is known, and exa
   const [exact, area] = [await shown(), await page.evaluate(() => turnwright.sectionArea)];
   for (const step of [9010, 100, 17000, 9000]) await page.evaluate((step) => turnwright.goTo(step), step);
   await page.waitForFunction((exact) => document.getElementById("layer-stock").toDataURL() === exact, exact);
+  // The list of the program, too long to be all there, comes to the row when the hand rests.
+  const line = await page.evaluate(() => { for (let step = 5000; step <= 9900; step += 100) turnwright.goTo(step); return turnwright.currentLine; });
+  assert.equal(await page.locator(`.row[data-line="${line}"]`).count(), 0);
+  await page.waitForFunction((line) => document.querySelector(".row.current")?.dataset.line === String(line), line);
+  await page.evaluate(() => turnwright.goTo(9000));
   // Cuts in the same direction are taken away together where that is as exact: the last moment agrees.
   const areas = await page.evaluate(() => [8999, 9000, 9001].map((step) => (turnwright.goTo(step), turnwright.sectionArea)));
   assert.ok(areas[0] >= areas[1] && areas[1] >= areas[2] && Math.abs(areas[1] - area) < 0.02, `${areas} ${area}`);

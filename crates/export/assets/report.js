@@ -577,14 +577,28 @@
     if (!isOther) showTime();
     else {
       markPass();
-      // While it plays fast, the list is not moved at every frame.
-      if (isOnTheWay() && !(playing && performance.now() - scrolledAt < 200)) {
-        scrollTo(path.line[currentMove()]);
-        scrolledAt = performance.now();
-      }
+      followInList();
       markRows();
       readout();
     }
+  };
+  // The list goes along with the moment that is shown: a few times a second while it plays, and in a list too long to be
+  // all there when the hand rests, for making its rows takes longer than all the rest of a step.
+  const FOLLOW_MS = 200;
+  let following = 0, steppedAt = 0;
+  const followInList = () => {
+    clearTimeout(following);
+    if (!isOnTheWay()) return;
+    const follow = () => {
+      if (!isOnTheWay()) return;
+      scrollTo(path.line[currentMove()]);
+      scrolledAt = performance.now();
+    };
+    const lately = performance.now() - FOLLOW_MS;
+    const waits = playing ? scrolledAt > lately : run.program.length > ROWS_PLAIN && steppedAt > lately;
+    steppedAt = performance.now();
+    if (waits) following = setTimeout(() => { follow(); markRows(); }, FOLLOW_MS);
+    else follow();
   };
   const clearSelection = () => { select(0); };
   // The time of what is shown; the tool may stand and wait at the beginning of a move.
