@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use crate::Dynamics;
 use crate::dynamics::{CornerLaw, Demand};
 use crate::leg::{Heading, Leg};
-use crate::planner::{Full, Pace, SPEED_MIN_MM_PER_S};
+use crate::planner::{Full, Pace, SPEED_MIN_MM_PER_S, least};
 
 /// Stretches that wait for the corners behind them. With more inside one corner's time, the corner is passed as
 /// slowly as if the stretch behind were all corners.
@@ -36,6 +36,8 @@ pub(crate) struct Corners {
     /// Overrides and dry runs may ask for more than is ordered.
     has_operator: bool,
     waiting: VecDeque<Stretch>,
+    /// No stretch may be passed faster.
+    fastest_mm_per_s: f64,
     end_mm: f64,
     soonest_s: f64,
     heading: Option<Heading>,
@@ -54,6 +56,7 @@ impl Corners {
             has_operator,
             // Twice, so that they seldom come to lie around the end of the ring.
             waiting: VecDeque::with_capacity(2 * WAITING_MAX),
+            fastest_mm_per_s: 0.0,
             end_mm: 0.0,
             soonest_s: 0.0,
             heading: None,
@@ -65,6 +68,7 @@ impl Corners {
 
     pub(crate) fn clear(&mut self) {
         self.waiting.clear();
+        self.fastest_mm_per_s = 0.0;
         (self.end_mm, self.soonest_s, self.heading) = (0.0, 0.0, None);
         (self.demand, self.group, self.apart) = (Demand::default(), 0, None);
     }
@@ -89,6 +93,10 @@ impl Corners {
 
     /// A stretch of the leg that has begun.
     pub(crate) fn add(&mut self, length_mm: f64, ordered_mm_per_s: f64, limit_mm_per_s: f64) {
+        // With nobody who could raise it, the order is a limit: then stretches of one speed are alike.
+        let limit_mm_per_s =
+            if self.has_operator { limit_mm_per_s } else { least(ordered_mm_per_s, limit_mm_per_s) };
+        self.fastest_mm_per_s = self.fastest_mm_per_s.max(limit_mm_per_s);
         self.end_mm += length_mm;
         self.soonest_s += length_mm / limit_mm_per_s.max(SPEED_MIN_MM_PER_S);
         self.waiting.push_back(Stretch {
@@ -127,15 +135,18 @@ impl Corners {
         };
         self.apart = self.apart.filter(|index| !is_out(&waiting[*index]));
         let apart = self.apart.map_or(f64::INFINITY, |index| way_speed(&waiting[index]));
+        let slowest = least(together, apart);
+        if slowest >= self.fastest_mm_per_s {
+            return;
+        }
         let start = self.apart.map_or(self.group, |index| index + 1);
         for stretch in &mut waiting[start..=self.group] {
-            stretch.limit_mm_per_s = stretch.limit_mm_per_s.min(apart);
+            stretch.limit_mm_per_s = least(stretch.limit_mm_per_s, apart);
         }
-        let slowest = together.min(apart);
-        waiting[self.group].corner_mm_per_s = waiting[self.group].corner_mm_per_s.min(slowest);
+        waiting[self.group].corner_mm_per_s = least(waiting[self.group].corner_mm_per_s, slowest);
         for stretch in &mut waiting[self.group + 1..] {
-            stretch.limit_mm_per_s = stretch.limit_mm_per_s.min(slowest);
-            stretch.corner_mm_per_s = stretch.corner_mm_per_s.min(slowest);
+            stretch.limit_mm_per_s = least(stretch.limit_mm_per_s, slowest);
+            stretch.corner_mm_per_s = least(stretch.corner_mm_per_s, slowest);
         }
     }
 
@@ -154,12 +165,9 @@ impl Corners {
                 let apart = (self.end_mm - first.end_mm) / self.law.time_s;
                 let is_early = !is_over && !is_apart;
                 let speed = if is_early { first.corner_mm_per_s.min(apart) } else { first.corner_mm_per_s };
+                let next = self.waiting.get(1).map_or(f64::INFINITY, |next| next.limit_mm_per_s);
                 // Slower than the stretches beside it, or it holds nobody up.
-                let fastest = |stretch: &Stretch| match self.has_operator {
-                    true => stretch.limit_mm_per_s,
-                    false => stretch.ordered_mm_per_s.min(stretch.limit_mm_per_s),
-                };
-                if speed < self.waiting.iter().take(2).map(fastest).fold(f64::INFINITY, f64::min) {
+                if speed < least(first.limit_mm_per_s, next) {
                     pace.push(0.0, f64::INFINITY, speed)?;
                 }
             }

@@ -5,7 +5,7 @@
 //! have all of it.
 
 use crate::leg::{Heading, Place};
-use crate::planner::RunLimits;
+use crate::planner::{RunLimits, most};
 
 /// Acceleration and jerk of one axis: mm of slide, or degrees, per s² and s³.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -231,13 +231,12 @@ impl CornerLaw {
 
     /// The highest speed at which a demand is met.
     pub(crate) fn speed(&self, demand: &Demand) -> f64 {
-        let larger = |one: f64, other: f64| if one > other { one } else { other };
-        let mut slowness = demand.turn.into_iter().fold(0.0, larger);
+        let mut slowness = demand.turn.into_iter().fold(0.0, most);
         if demand.bends > 0 {
             for ((turn, bend), part) in demand.turn.iter().zip(&demand.bend).zip(&self.turn_jerk) {
                 // v²·bend + v·turn·part = 1
                 let linear = turn * part;
-                slowness = larger(slowness, (linear + (linear * linear + 4.0 * bend).sqrt()) / 2.0);
+                slowness = most(slowness, (linear + (linear * linear + 4.0 * bend).sqrt()) / 2.0);
             }
         }
         1.0 / slowness

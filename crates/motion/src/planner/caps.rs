@@ -8,6 +8,8 @@
 //! speed above V, the window would cover more path than V·T; it would reach beyond the widened stretch on one side
 //! only, and the mean place would lie beyond the stretch.
 
+use super::{least, most};
+
 /// What the operator makes of the speeds that the program orders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Feedrate {
@@ -46,7 +48,7 @@ impl Cap {
             Feedrate::Fixed(_) if self.ordered_mm_per_s == f64::INFINITY => f64::INFINITY,
             Feedrate::Fixed(mm_per_s) => mm_per_s,
         };
-        ordered.min(self.limit_mm_per_s).max(SPEED_MIN_MM_PER_S)
+        most(least(ordered, self.limit_mm_per_s), SPEED_MIN_MM_PER_S)
     }
 
     /// Speed and width as the operator had them when it came.
@@ -135,8 +137,8 @@ pub(super) fn widen<'a>(
     for span in &room.forward {
         let mut at = span.start;
         while at < span.end {
-            let to = span.end.min(other.end);
-            append(out, Span { start: at, end: to, speed: span.speed.min(other.speed) });
+            let to = least(span.end, other.end);
+            append(out, Span { start: at, end: to, speed: least(span.speed, other.speed) });
             at = to;
             if other.end <= at {
                 match backward.next() {
@@ -155,7 +157,7 @@ fn widen_forward(spans: impl Iterator<Item = WideSpan>, half_window_s: f64, out:
         let mut at = span.start;
         while at < span.end {
             let (to, speed) = match carries.lowest(at) {
-                Some(carry) if carry.speed < span.speed => (carry.until.min(span.end), carry.speed),
+                Some(carry) if carry.speed < span.speed => (least(carry.until, span.end), carry.speed),
                 _ => (span.end, span.speed),
             };
             append(out, Span { start: at, end: to, speed });

@@ -20,3 +20,13 @@ pub use caps::{Cap, Feedrate, SPEED_MIN_MM_PER_S};
 pub use pace::{Full, Pace, RunLimits};
 pub use phases::PathState;
 pub(crate) use phases::{Phase, Phases};
+
+/// The smaller of two numbers. As `f64::min` but for what is no number, which never comes here; quicker.
+pub(crate) const fn least(one: f64, other: f64) -> f64 {
+    if one < other { one } else { other }
+}
+
+/// The larger of two numbers, likewise.
+pub(crate) const fn most(one: f64, other: f64) -> f64 {
+    if one > other { one } else { other }
+}

@@ -6,6 +6,7 @@
 //! Two passes, both linear: backward from the end, where the tool stands, and forward from the start.
 
 use super::caps::Span;
+use super::{least, most};
 
 /// A place and the square of the speed there. Speeds are kept squared: along the path the square grows evenly.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,9 +36,9 @@ pub(super) fn backward(spans: &[Span], growth: f64, out: &mut Vec<f64>) {
     let mut square = 0.0f64;
     for (index, span) in spans.iter().enumerate().rev() {
         out[index + 1] = square;
-        square = (square + growth * (span.end - span.start)).min(span.speed * span.speed);
+        square = least(square + growth * (span.end - span.start), span.speed * span.speed);
         if let Some(before) = index.checked_sub(1) {
-            square = square.min(spans[before].speed * spans[before].speed);
+            square = least(square, spans[before].speed * spans[before].speed);
         }
         out[index] = square;
     }
@@ -55,7 +56,8 @@ pub(super) fn forward(spans: &[Span], bounds: &[f64], growth: f64, start: Knot, 
         } else if square + change <= *goal {
             square += change;
         } else {
-            let peak = ((square + goal + change) / 2.0).min(span.speed * span.speed).max(square).max(*goal);
+            let top = least((square + goal + change) / 2.0, span.speed * span.speed);
+            let peak = most(most(top, square), *goal);
             push(out, span.start + (peak - square) / growth, peak);
             push(out, span.end - (peak - goal) / growth, peak);
             square = *goal;
