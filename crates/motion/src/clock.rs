@@ -238,13 +238,13 @@ impl Clock {
             Action::Feed { to, shape, .. } => Some(CutPath::new(self.position, *to, shape)),
             _ => None,
         };
-        let timing = self.advance_along(command, path);
+        let timing = self.advance_along(command, path.as_ref());
         self.totals.add(&timing);
         timing
     }
 
     /// As [`Clock::advance`], but for the sums, with the way of a cutting move that has been measured already.
-    pub(crate) fn advance_along(&mut self, command: &Command, path: Option<CutPath>) -> Timing {
+    pub(crate) fn advance_along(&mut self, command: &Command, path: Option<&CutPath>) -> Timing {
         self.shift = None;
         if self.watch.is_some() {
             self.watched_at = (command.origin.source, command.origin.line);
@@ -252,8 +252,15 @@ impl Clock {
         let timing = match &command.action {
             Action::Rapid { to, path, others } => self.rapid(*to, *path, others.as_deref()),
             Action::Feed { to, shape, feed, others } => {
-                let path = path.unwrap_or_else(|| CutPath::new(self.position, *to, shape));
-                self.cut(*to, shape, *feed, others.as_deref(), &path)
+                let measured;
+                let path = match path {
+                    Some(path) => path,
+                    None => {
+                        measured = CutPath::new(self.position, *to, shape);
+                        &measured
+                    }
+                };
+                self.cut(*to, shape, *feed, others.as_deref(), path)
             }
             Action::Thread { to, lead, .. } if self.is_led => self.tap(*to, *lead),
             Action::Thread { to, shape, lead, lead_end, is_chained, .. } => {

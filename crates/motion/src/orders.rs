@@ -53,6 +53,7 @@ impl Clock {
     }
 
     /// What the next command orders when it is a cut at a known speed; `None` for all else.
+    #[inline]
     pub(crate) fn cut_order<'a>(&self, action: &'a Action) -> Option<CutOrder<'a>> {
         let Action::Feed { to, shape, feed, others } = action else { return None };
         let (from, to, others) = (self.position(), *to, others.as_deref());

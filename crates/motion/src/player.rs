@@ -294,7 +294,7 @@ impl Player {
             return;
         };
         if !self.run.is_open() {
-            let waited_s = self.clock.clone().advance_along(command, Some(order.path)).waited_s;
+            let waited_s = self.clock.clone().advance_along(command, Some(&order.path)).waited_s;
             self.stand(waited_s, Kind::Spindle, block, sink);
             self.has_others = order.has_others;
             let mut spindle = self.clock.turning_spindle();
@@ -318,7 +318,7 @@ impl Player {
             self.blocks.push_back(block);
         }
         self.legs = legs;
-        self.clock.advance_along(command, Some(order.path));
+        self.clock.advance_along(command, Some(&order.path));
     }
 
     /// Plays what is final of the run; whether it is over.

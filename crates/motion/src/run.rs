@@ -25,11 +25,10 @@ pub(crate) struct CuttingRun {
     ends_mm: VecDeque<f64>,
     /// The legs themselves, when anybody asks for places.
     legs: Option<VecDeque<Leg>>,
-    last: Option<Leg>,
     end_mm: f64,
     corners: Corners,
-    /// What is left of the last leg.
-    current: Option<Stretches>,
+    /// The last leg, when there are stretches left of it.
+    current: Option<(Leg, Stretches)>,
     pub(crate) spindle: TurningSpindle,
     is_over: bool,
     /// Seconds from the end of the profile until the axes stand in position.
@@ -44,7 +43,6 @@ impl CuttingRun {
             pace: Pace::with_capacity(2 * LEGS_MAX, dynamics.cutting(false)),
             ends_mm: VecDeque::with_capacity(LEGS_MAX),
             legs: is_played.then(|| VecDeque::with_capacity(LEGS_MAX)),
-            last: None,
             end_mm: 0.0,
             corners: Corners::new(&dynamics, is_played),
             current: None,
@@ -78,10 +76,15 @@ impl CuttingRun {
         self.end_mm += leg.length_mm;
         self.ends_mm.push_back(self.end_mm);
         self.legs.iter_mut().for_each(|legs| legs.push_back(*leg));
-        self.last = Some(*leg);
         self.corners.turn_into(leg);
-        self.current = Some(Stretches::new(order, limit_mm_per_s));
-        self.feed();
+        let has_room = self.corners.pour(&mut self.pace, false).is_ok() || self.corners.has_room();
+        match order {
+            Order::Speed(speed) if has_room => self.corners.add(leg.length_mm, speed, limit_mm_per_s),
+            _ => {
+                self.current = Some((*leg, Stretches::new(order, limit_mm_per_s)));
+                self.feed();
+            }
+        }
     }
 
     /// No more legs come. The corners' averaging runs out, and after an exact stop the axes get into position.
@@ -98,13 +101,13 @@ impl CuttingRun {
 
     /// Takes stretches as far as there is room.
     fn feed(&mut self) {
-        while let (Some(stretches), Some(last)) = (&mut self.current, &self.last) {
+        while let Some((leg, stretches)) = &mut self.current {
             if self.corners.pour(&mut self.pace, false).is_err() && !self.corners.has_room() {
                 return;
             }
-            let (length, speed) = stretches.next(last, &mut self.spindle);
+            let (length, speed) = stretches.next(leg, &mut self.spindle);
             self.corners.add(length, speed, stretches.limit_mm_per_s);
-            if stretches.is_done(last) {
+            if stretches.is_done(leg) {
                 self.current = None;
             }
         }
@@ -139,7 +142,7 @@ impl CuttingRun {
             Some((leg, end_mm)) => {
                 leg.place(((state.at_mm - (end_mm - leg.length_mm)) / leg.length_mm).max(0.0))
             }
-            None => self.last.map_or([0.0; 6], |last| last.to),
+            None => self.legs.as_ref().and_then(VecDeque::back).map_or([0.0; 6], |last| last.to),
         };
         (place, state)
     }

@@ -158,7 +158,7 @@ impl Planning {
         let path = cut.path;
         let mut spindle = clock.turning_spindle();
         let wanted_rpm = clock.spindle_order().rpm_at(clock.position().x.to_mm());
-        let timing = clock.advance_along(&command, Some(path));
+        let timing = clock.advance_along(&command, Some(&path));
         if !self.run.is_open() {
             self.has_others = has_others;
             if timing.waited_s > 0.0 || spindle.ramp_rpm_per_s == 0.0 {
