@@ -483,7 +483,7 @@ impl ActiveCycle {
 
 #[cfg(test)]
 mod tests {
-    use turnwright_control::{Control, Setup};
+    use turnwright_control::{Control, DEFAULT_CONTROL, Setup};
     use turnwright_diagnostics::{Argument, SourceId};
 
     use crate::limits::RUN_MOVES_MAX;
@@ -509,7 +509,7 @@ mod tests {
         // A turning cycle makes four moves.
         let alarm = |made_before: u64| {
             let mut text = Text(b"O1\nG97 S500 M3\nG0 X50. Z2.\nG90 X40. Z-20. F0.2\nM30\n");
-            let control = Control::load("fanuc-0i-tf").expect("a control");
+            let control = Control::load(DEFAULT_CONTROL).expect("a control");
             let mut interpreter =
                 Interpreter::new(control, &Setup::default(), SourceId(0), Options::default())
                     .expect("a start");
