@@ -167,7 +167,7 @@ fn reading(folder: &Path, rounds: usize, board: &mut Board) -> Result<(), String
         println!(
             "{label:16} {:8.3} s  {:6.0} MB/s  {share:5.2} x the source in memory",
             cost.cpu_s,
-            bytes / cost.cpu_s / 1e6
+            if step == "lex" { crate::LEX_TIMES as f64 } else { 1.0 } * bytes / cost.cpu_s / 1e6
         );
     }
     Ok(())

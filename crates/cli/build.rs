@@ -1,4 +1,4 @@
-//! Makes a constant of `data/texts.toml`.
+//! Makes a constant of `data/texts.toml`, and says how the program is linked.
 #![allow(clippy::disallowed_methods, clippy::disallowed_macros, reason = "a build script reads files")]
 
 #[path = "../control/build/tables.rs"]
