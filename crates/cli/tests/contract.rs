@@ -719,3 +719,19 @@ fn a_spindle_that_cannot_have_its_speed_in_the_time_of_g26_is_an_alarm() {
     let ran = run(1800);
     assert!(ran.status == 0 && !ran.err.contains("OH0704"), "{}", ran.err);
 }
+
+#[test]
+fn check_and_time_tell_what_the_clock_shows_as_run_does() {
+    let folder = Folder::new();
+    let setup = folder.file("clock.toml", "control = \"fanuc-0i-tf\"\n");
+    let text = "O1\nG26 P500 Q5 R10 I50\nG97 S2000 M03\nG00 X20. Z0.5\nG32 Z-10. F2.\nG00 X40.\nM30\n";
+    let program = folder.file("clock.nc", text);
+    for command in ["run", "check", "time"] {
+        let ran = turnwright(&[command, &program, "--setup", &setup]);
+        assert_eq!(ran.status, 1, "{command}: {}", ran.err);
+        assert!(ran.err.contains("alarm[OH0704]"), "{command}: {}", ran.err);
+        assert_eq!(ran.err.contains("T081"), command != "time", "{command}: {}", ran.err);
+    }
+    let ran = turnwright(&["check", "--alarms-only", &program, "--setup", &setup]);
+    assert!(ran.status == 0 && !ran.err.contains("OH0704"), "{}", ran.err);
+}

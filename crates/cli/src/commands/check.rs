@@ -18,8 +18,9 @@ use crate::fault::{Fault, Status, caught};
 use crate::finding::Finding;
 use crate::output::sarif::{self, SarifResult};
 use crate::part;
+use crate::rates::rates;
 use crate::render::Printer;
-use crate::report::Measure;
+use crate::report::{Kept, Measure};
 use crate::session::Session;
 use crate::speech::Speech;
 
@@ -198,10 +199,19 @@ fn find(text: &ProgramText, options: &Check, printer: &Printer) -> Vec<Finding> 
             checks.add(&command);
         }
         let checked = checks.finish(&session.setup);
+        // The clock tells where a thread starts too close and where the spindle strays.
+        let start = execution.interpreter().position();
+        let mut measure = session.setup.machine().ok().map(|machine| {
+            let machine = machine.limited_by(&session.control.parameters);
+            let parameters = &session.control.parameters;
+            let rates = rates(&machine, parameters, options.machine.optional_stop);
+            Measure::new(start, rates, Kept::default())
+        });
         let mut look = |_: &Execution<'_>, _: &mut Measure| Ok(());
-        let inferred = &checked.inferred;
-        let part = part::machined(text, &session, &options.machine, inferred, None, None, &mut look);
+        let (asked, inferred) = (&options.machine, &checked.inferred);
+        let part = part::machined(text, &session, asked, inferred, None, measure.as_mut(), &mut look);
         let part = part.ok().flatten();
+        measure.iter().flat_map(Measure::warnings).for_each(|finding| execution.warn(finding));
         let judged = part::judged(part.as_ref(), &session.setup, execution.alarm());
         let of_text = of_text(text);
         let of_part = part.into_iter().flat_map(|part| part.findings).chain(part::out_of_tolerance(&judged));

@@ -108,6 +108,7 @@ fn one(path: &Path, options: &Time, printer: &Printer) -> Result<Status, Fault> 
         let picture = TimePicture { title, language: picture_language(speech.language) };
         write_picture(path, &write_time_svg(timeline, &picture), speech)?;
     }
+    measure.warnings().for_each(|finding| execution.warn(finding));
     // What is told here are the alarms; `check` tells the rest.
     let mut findings = execution.findings();
     let status = findings.iter().map(Finding::status).max().unwrap_or(Status::Clean);
