@@ -89,7 +89,11 @@ pub(crate) fn snap_z(nm: f64, increment: LeastIncrement) -> Length {
 
 fn steps(nm: f64, grid: i64) -> i64 {
     // Callers stay inside the range by construction; the clamp only keeps a bad float from becoming a bad product.
-    (nm / grid as f64).round().clamp(-1e16, 1e16) as i64
+    let count = (nm / grid as f64).clamp(-1e16, 1e16);
+    // As `f64::round`, which is a call: what is left behind the point is exact.
+    let whole = count as i64;
+    let rest = count - whole as f64;
+    whole + i64::from(rest >= 0.5) - i64::from(rest <= -0.5)
 }
 
 /// `numerator / denominator` to the nearest multiple of `grid`, halves away from zero. Positive denominator and grid.
@@ -110,6 +114,16 @@ mod tests {
         assert_eq!(plane.place(10_000_260, 0).x, Radius(Length::from_nm(10_000_500)));
         assert_eq!(snap_x(10_000_260.0, LeastIncrement::METRIC_B), Radius(Length::from_nm(10_000_500)));
         assert_eq!(plane.place(10_000_240, 0).x, Radius(Length::from_nm(10_000_000)));
+    }
+
+    #[test]
+    fn steps_are_rounded_as_floats_are() {
+        let bits = (0..64).map(|bit| f64::from_bits(0x3fdf_ffff_ffff_ffff_u64.wrapping_add(bit)));
+        let some =
+            [0.0, -0.0, 0.5, 1.5, 2.5, 4_503_599_627_370_495.5, 9e15, 1e16, 1e300, f64::INFINITY, f64::NAN];
+        for value in bits.chain(some).flat_map(|value| [value, -value]) {
+            assert_eq!(steps(value, 1), value.round().clamp(-1e16, 1e16) as i64, "{value:e}");
+        }
     }
 
     #[test]

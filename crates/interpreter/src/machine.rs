@@ -467,34 +467,50 @@ impl Interpreter {
     /// Goes on until there is something to say.
     #[inline]
     pub fn step(&mut self, environment: &mut dyn Environment) -> Step {
-        // The moves of a cycle come one behind the other with nothing in between, and so do those of short lines.
-        if self.core.out.is_empty()
-            && self.core.sync.is_none()
-            && let Some(command) = self.next_cycle_move().or_else(|| self.next_short_move())
-        {
-            return Step::Emit(command);
+        // The moves of a cycle come one behind the other with nothing in between, and so do those of short lines. Each
+        // kind has a function of its own: what the others keep at hand would be in its way.
+        if self.core.out.is_empty() && self.core.sync.is_none() {
+            if self.core.active.is_some() {
+                if let Some(command) = self.next_cycle_move() {
+                    return Step::Emit(command);
+                }
+            } else if self.alarm.is_none() {
+                return if self.core.cache.current.is_some() {
+                    self.step_by_kept_lines(environment)
+                } else {
+                    self.step_by_lines(environment)
+                };
+            }
         }
         self.step_by_blocks(environment)
+    }
+
+    #[inline(never)]
+    fn step_by_lines(&mut self, environment: &mut dyn Environment) -> Step {
+        match self.core.next_short_move(&mut self.text_lines) {
+            Some(command) => self.emit(command),
+            None => self.step_by_blocks(environment),
+        }
+    }
+
+    #[inline(never)]
+    fn step_by_kept_lines(&mut self, environment: &mut dyn Environment) -> Step {
+        match self.core.next_short_move(&mut self.kept_lines) {
+            Some(command) => self.emit(command),
+            None => self.step_by_blocks(environment),
+        }
+    }
+
+    #[inline(always)]
+    fn emit(&mut self, command: Command) -> Step {
+        self.core.idle_blocks = 0;
+        self.core.moves_done = false;
+        Step::Emit(command)
     }
 
     #[inline(always)]
     fn next_cycle_move(&mut self) -> Option<Command> {
         let command = self.core.next_cycle_move()?;
-        self.core.idle_blocks = 0;
-        self.core.moves_done = false;
-        Some(command)
-    }
-
-    #[inline(always)]
-    fn next_short_move(&mut self) -> Option<Command> {
-        if self.core.active.is_some() || self.alarm.is_some() {
-            return None;
-        }
-        let command = if self.core.cache.current.is_some() {
-            self.core.next_short_move(&mut self.kept_lines)?
-        } else {
-            self.core.next_short_move(&mut self.text_lines)?
-        };
         self.core.idle_blocks = 0;
         self.core.moves_done = false;
         Some(command)

@@ -131,9 +131,18 @@ impl Length {
 
     /// The multiple of `increment` nearest to this length, halves away from zero.
     pub const fn rounded(self, increment: LeastIncrement) -> Self {
+        const USUAL: i64 = LeastIncrement::METRIC_B.nm;
+        const FINE: i64 = LeastIncrement::METRIC_C.nm;
         let step = increment.nm;
         let half = if self.nm < 0 { -(step / 2) } else { step / 2 };
-        Self { nm: self.nm.saturating_add(half) / step * step }
+        let sum = self.nm.saturating_add(half);
+        // A division by a known number costs little.
+        let nm = match step {
+            USUAL => sum / USUAL * USUAL,
+            FINE => sum / FINE * FINE,
+            _ => sum / step * step,
+        };
+        Self { nm }
     }
 }
 
