@@ -6,11 +6,11 @@
 //! place on the virtual axis of polar or cylindrical interpolation (a line of `op` `interpolation` says which). Arcs
 //! in a plane with `y` or `v` name it: `face` (X and the side axis), `flank` or `wall` (Z and the side axis, seen
 //! from either side), with the centre as `cx` or `cz`, and `cs`. `coupling` is another rotation in step with the
-//! spindle; 0 to 0 ends it. While nose compensation is on, moves also have `nx` and `nz`, the centre of the nose.
-//! Fields stand in a fixed order and
-//! numbers carry no trailing zeros, so that equal runs give equal bytes. A line of another file than the program's
-//! own (a subprogram of the same folder) ends with `file`, the name of that file. Writing a command allocates nothing
-//! but room in the buffer.
+//! spindle; 0 to 0 ends it. `rigid-tapping` says that threads lead the spindle from here on, or no longer, and
+//! `spindle-watch` how its speed is watched (G26), in percent, rpm and milliseconds. While nose compensation is on,
+//! moves also have `nx` and `nz`, the centre of the nose. Fields stand in a fixed order and numbers carry no trailing
+//! zeros, so that equal runs give equal bytes. A line of another file than the program's own (a subprogram of the same
+//! folder) ends with `file`, the name of that file. Writing a command allocates nothing but room in the buffer.
 
 use turnwright_canon::{
     Action, Command, Coolant, Curve, Dwell, Interpolation, Origin, OtherAxes, PathMode, Shape, SidePlane,
