@@ -393,11 +393,14 @@ impl Core {
         Ok(())
     }
 
-    #[inline]
+    #[inline(always)]
     pub(crate) fn change_motion(&mut self, id: FunctionId, code: u16) {
-        if (self.modal.motion, self.modal.motion_code) == (id, code) {
-            return;
+        if (self.modal.motion, self.modal.motion_code) != (id, code) {
+            self.begin_motion(id, code);
         }
+    }
+
+    fn begin_motion(&mut self, id: FunctionId, code: u16) {
         if self.modal.motion != id {
             if id.get().is_hole_cycle || self.modal.hole.is_some() {
                 self.change_hole_cycle(id, (self.modal.motion, self.modal.motion_code));

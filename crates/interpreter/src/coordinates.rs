@@ -112,7 +112,7 @@ impl Core {
     #[inline]
     pub(crate) fn is_in_range(&self, to: Position<WorkTip>) -> bool {
         let limit = self.settings.length_limit_nm;
-        to.x.to_diameter().0.abs().nm() < limit && to.z.abs().nm() < limit
+        to.x.to_diameter().0.is_below(limit) && to.z.is_below(limit)
     }
 
     /// Refuses a computed place that the control cannot hold.
@@ -124,7 +124,7 @@ impl Core {
     #[cold]
     fn out_of_range(&self, block: Option<&Block>, to: Position<WorkTip>) -> Alarm {
         let diameter = to.x.to_diameter().0;
-        let (value, letters) = if diameter.abs().nm() < self.settings.length_limit_nm {
+        let (value, letters) = if diameter.is_below(self.settings.length_limit_nm) {
             (to.z, [b'Z', b'W'])
         } else {
             (diameter, [b'X', b'U'])

@@ -93,13 +93,19 @@ impl Core {
     ///
     /// By reference, as all numbers of short lines: whoever reads one as a whole that was just written field by field
     /// waits for the fields.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn plain_length(&self, number: &Decimal) -> Option<Length> {
         if !(number.has_point || self.settings.is_calculator) || self.modal.is_inch {
             return None;
         }
-        let nm = self.millimetres(number)?;
-        (nm.abs() < self.settings.length_limit_nm).then(|| Length::from_nm(nm))
+        let nm = if number.scale <= self.settings.metric_decimals {
+            // Nearly every word: no finer than the increment.
+            number.digits.saturating_mul(POWER[usize::from(6 - number.scale)])
+        } else {
+            self.fine_millimetres(number)?
+        };
+        let length = Length::from_nm(nm);
+        length.is_below(self.settings.length_limit_nm).then_some(length)
     }
 
     /// A length word whose value counts, or is long, large or missing.
@@ -115,14 +121,10 @@ impl Core {
         self.length_with(word, self.offset_increment())
     }
 
-    /// Millimetres in nanometres where little can go wrong; [`Core::length_of`] does the rest.
-    #[inline]
-    fn millimetres(&self, number: &Decimal) -> Option<i64> {
+    /// Millimetres finer than the increment, in nanometres, where little can go wrong; [`Core::length_of`] does the
+    /// rest.
+    fn fine_millimetres(&self, number: &Decimal) -> Option<i64> {
         let increment = self.settings.metric_increment.nm();
-        if number.scale <= self.settings.metric_decimals {
-            // Nearly every word: no finer than the increment.
-            return Some(number.digits.saturating_mul(POWER[usize::from(6 - number.scale)]));
-        }
         if number.is_computed() && number.scale == 9 {
             // Nanometres in an increment, and the thousandths of them that computed values are held to.
             return Some(match increment {

@@ -86,9 +86,117 @@ impl Decimal {
     }
 }
 
+/// A run of digits with at most one point, without its sign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Run {
+    pub(crate) digits: i64,
+    /// Digits behind the point.
+    pub(crate) scale: u8,
+    pub(crate) typed_digits: u8,
+    pub(crate) has_point: bool,
+    /// Bytes that it takes.
+    pub(crate) bytes: usize,
+}
+
+impl Run {
+    /// The number that the run is, behind a minus or not.
+    #[inline(always)]
+    pub(crate) const fn signed(self, is_negative: bool) -> Decimal {
+        Decimal {
+            digits: if is_negative { -self.digits } else { self.digits },
+            scale: self.scale,
+            typed_digits: self.typed_digits,
+            has_point: self.has_point,
+            is_negative,
+        }
+    }
+
+    /// The run that eight bytes begin with, the first one lowest. One of all eight may go on behind them. `None` for
+    /// eight digits, and for no digit.
+    ///
+    /// A byte at a time, each number would be waited for at its end, which nobody can foretell where lengths differ.
+    #[inline(always)]
+    pub(crate) fn of_eight(bytes: u64) -> Option<Self> {
+        const ONES: u64 = 0x0101_0101_0101_0101;
+        // Digits become 0 to 9. The highest bit of every other byte is set in `others`, and of a digit's it is not as
+        // long as nothing but digits and a point stands before it.
+        let values = bytes ^ (0x30 * ONES);
+        let others = (values.wrapping_add(0x76 * ONES) | values) & (0x80 * ONES);
+        let whole_bits = others.trailing_zeros() & !7;
+        if whole_bits == 64 {
+            return None;
+        }
+        let has_point = (values >> whole_bits) as u8 == b'.' ^ 0x30;
+        let (digits, digits_bits) = if has_point {
+            // The digits move together over the point.
+            let whole = (1 << whole_bits) - 1;
+            let end_bits = (others & (others - 1)).trailing_zeros() & !7;
+            ((values & whole) | ((values >> 8) & !whole), end_bits - 8)
+        } else {
+            (values, whole_bits)
+        };
+        if digits_bits == 0 {
+            return None;
+        }
+        // Up to the end of the eight, and then two, four and eight of them at once.
+        let ones = digits << (64 - digits_bits);
+        let pairs = (ones.wrapping_mul(1 + (10 << 8)) >> 8) & 0x00ff_00ff_00ff_00ff;
+        let fours = (pairs.wrapping_mul(1 + (100 << 16)) >> 16) & 0x0000_ffff_0000_ffff;
+        let eight = fours.wrapping_mul(1 + (10_000 << 32)) >> 32;
+        let typed_digits = (digits_bits / 8) as u8;
+        Some(Self {
+            digits: eight as i64,
+            scale: typed_digits - (whole_bits / 8) as u8,
+            typed_digits,
+            has_point,
+            bytes: usize::from(typed_digits) + usize::from(has_point),
+        })
+    }
+
+    /// The run that `text` begins with, a byte at a time; `None` for no digit, and for more than [`DIGITS_MAX`].
+    #[inline(never)]
+    pub(crate) fn read_slowly(text: &[u8]) -> Option<Self> {
+        let (mut digits, mut bytes, mut point) = (0i64, 0, None);
+        for byte in text {
+            match byte {
+                b'0'..=b'9' => digits = digits.wrapping_mul(10).wrapping_add(i64::from(byte - b'0')),
+                b'.' if point.is_none() => point = Some(bytes),
+                _ => break,
+            }
+            bytes += 1;
+        }
+        let has_point = point.is_some();
+        let typed_digits = bytes - usize::from(has_point);
+        let scale = point.map_or(0, |point| typed_digits - point);
+        (1..=usize::from(DIGITS_MAX)).contains(&typed_digits).then_some(Self {
+            digits,
+            scale: scale as u8,
+            typed_digits: typed_digits as u8,
+            has_point,
+            bytes,
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn runs_read_at_once_are_those_read_byte_by_byte() {
+        // Every text of eight bytes of these kinds.
+        const KINDS: &[u8] = b"09.A \n\x80";
+        let mut text = [0; 8];
+        for mut index in 0..KINDS.len().pow(8) {
+            for place in &mut text {
+                *place = KINDS[index % KINDS.len()];
+                index /= KINDS.len();
+            }
+            let run = Run::of_eight(u64::from_le_bytes(text));
+            let slow = Run::read_slowly(&text).filter(|run| run.typed_digits < 8);
+            assert_eq!(run, slow, "{}", text.escape_ascii());
+        }
+    }
 
     #[test]
     fn computed_values_are_held_to_nine_places() {

@@ -5,7 +5,7 @@
 //! same numbers of them. Not here: words with their places, which only somebody who complains needs.
 
 use crate::lines::LineEnd;
-use crate::number::{DIGITS_MAX, Decimal};
+use crate::number::{Decimal, Run};
 use crate::{Value, Word};
 
 /// Places for letters: as many as there are, and more, so that every remainder is one.
@@ -23,21 +23,20 @@ pub struct ShortLine {
 
 impl ShortLine {
     /// Reads the line at the start of `text` when it is one block of blanks and of words with these `letters`
-    /// ([`Block::bit`](crate::Block::bit)), each at most once, and its end is in sight. `None` for any other: nothing
-    /// is known then.
+    /// ([`Block::bit`](crate::Block::bit)), each at most once, and its end and a little more is in sight. `None` for
+    /// any other: nothing is known then.
     #[inline]
     pub fn read(&mut self, text: &[u8], letters: u32) -> Option<LineEnd> {
         let mut left = letters;
         let (mut at, mut last_byte) = (0, 0);
-        let mut byte = *text.first()?;
-        loop {
-            let letter = byte.wrapping_sub(b'A');
+        let end = loop {
+            let sight: &Sight = text.get(at..)?.first_chunk()?;
+            let letter = sight[0].wrapping_sub(b'A');
             if letter >= 26 {
-                if byte != b' ' {
-                    break;
+                if sight[0] != b' ' {
+                    break sight;
                 }
                 at += 1;
-                byte = *text.get(at)?;
                 continue;
             }
             let bit = 1 << letter;
@@ -45,25 +44,26 @@ impl ShortLine {
                 return None;
             }
             if left == letters {
-                (self.first, self.first_byte) = (b'A' + letter, at as u32);
+                (self.first, self.first_byte) = (sight[0], at as u32);
             }
             left ^= bit;
-            let (number, end, next) = number(text, at + 1)?;
+            let (number, bytes, next) = match number(sight) {
+                Some(number) => number,
+                None => long_number(text.get(at..)?)?,
+            };
             self.numbers[usize::from(letter) % PLACES] = number;
-            (at, last_byte, byte) = (end, end, next);
-        }
+            last_byte = at + bytes;
+            at = last_byte + usize::from(next == b' ');
+        };
         self.present = letters ^ left;
         self.last_byte = last_byte as u32;
-        if byte == b';' {
-            at += 1;
-            byte = *text.get(at)?;
-        }
-        let next = match byte {
-            b'\n' => at + 1,
-            b'\r' if text.get(at + 1) == Some(&b'\n') => at + 2,
+        let semicolon = usize::from(end[0] == b';');
+        let next = match end[semicolon] {
+            b'\n' => semicolon + 1,
+            b'\r' if end[semicolon + 1] == b'\n' => semicolon + 2,
             _ => return None,
         };
-        Some(LineEnd { start: at, next })
+        Some(LineEnd { start: at + semicolon, next: at + next })
     }
 
     /// Takes the words of a block that was read before, all of one letter each. Numbers that are not known yet have to
@@ -113,54 +113,37 @@ impl ShortLine {
     }
 }
 
-/// A number with at most one sign, a minus, and at most one point: itself, where it ends, and the byte there.
-#[inline]
-fn number(text: &[u8], from: usize) -> Option<(Decimal, usize, u8)> {
-    let mut at = from;
-    let mut byte = *text.get(at)?;
-    let is_negative = byte == b'-';
-    if is_negative {
-        at += 1;
-        byte = *text.get(at)?;
+/// What is looked at of a text at once: a word with a usual number, and what follows it.
+type Sight = [u8; 16];
+
+/// The number of a word with at most one sign, a minus, and at most one point: itself, the bytes of the word, and the
+/// byte behind them. `None` when it is none, or a long one.
+#[inline(always)]
+fn number(word: &Sight) -> Option<(Decimal, usize, u8)> {
+    let &[letter, first, second, _, _, _, _, _, _, ninth, ..] = word;
+    if letter == b'G' && first.is_ascii_digit() && !second.is_ascii_digit() && second != b'.' {
+        // The codes of most lines.
+        let run =
+            Run { digits: i64::from(first - b'0'), scale: 0, typed_digits: 1, has_point: false, bytes: 1 };
+        return Some((run.signed(false), 2, second));
     }
-    let first = at;
-    let mut value = 0i64;
-    let mut digit = byte.wrapping_sub(b'0');
-    while digit <= 9 {
-        value = value.wrapping_mul(10).wrapping_add(i64::from(digit));
-        at += 1;
-        byte = *text.get(at)?;
-        digit = byte.wrapping_sub(b'0');
-    }
-    let mut typed = at - first;
-    let mut scale = 0;
-    let has_point = byte == b'.';
-    if has_point {
-        at += 1;
-        let point = at;
-        byte = *text.get(at)?;
-        digit = byte.wrapping_sub(b'0');
-        while digit <= 9 {
-            value = value.wrapping_mul(10).wrapping_add(i64::from(digit));
-            at += 1;
-            byte = *text.get(at)?;
-            digit = byte.wrapping_sub(b'0');
-        }
-        scale = at - point;
-        typed += scale;
-    }
+    let eight = u64::from_le_bytes(*word[1..].first_chunk()?);
+    let is_negative = first == b'-';
+    let run = Run::of_eight(if is_negative { eight >> 8 | u64::from(ninth) << 56 } else { eight })?;
+    let bytes = 1 + usize::from(is_negative) + run.bytes;
     // A letter O behind digits may stand for a zero, and is no letter of a short line.
-    if typed == 0 || typed > usize::from(DIGITS_MAX) {
-        return None;
-    }
-    let number = Decimal {
-        digits: if is_negative { -value } else { value },
-        scale: scale as u8,
-        typed_digits: typed as u8,
-        has_point,
-        is_negative,
-    };
-    Some((number, at, byte))
+    let next = word[bytes % word.len()];
+    (!next.is_ascii_digit()).then(|| (run.signed(is_negative), bytes, next))
+}
+
+/// The same of a word of any length, at the start of `text`.
+#[cold]
+fn long_number(text: &[u8]) -> Option<(Decimal, usize, u8)> {
+    let is_negative = *text.get(1)? == b'-';
+    let first = 1 + usize::from(is_negative);
+    let run = Run::read_slowly(text.get(first..)?)?;
+    let bytes = first + run.bytes;
+    Some((run.signed(is_negative), bytes, *text.get(bytes)?))
 }
 
 #[cfg(test)]
@@ -173,7 +156,8 @@ mod tests {
     /// What both readers make of a line; `None` where the short one leaves it.
     fn read(text: &str) -> Option<(LineEnd, ShortLine)> {
         let mut line = ShortLine::default();
-        let end = line.read(text.as_bytes(), ALL)?;
+        let seen = [text.as_bytes(), b"G0 X0. Z0. (seen)"].concat();
+        let end = line.read(&seen, ALL)?;
         let mut block = Block::new();
         scan_block(text.as_bytes().get(..end.start)?, 0, &mut block);
         assert_eq!(block.present(), line.present(), "{text}");
@@ -188,9 +172,15 @@ mod tests {
 
     #[test]
     fn lines_of_words_are_read_as_blocks_are() {
-        for text in
-            ["G1 X40.2005 Z-0.0131\n", "  N10G01X.5Z5.F200 \r\n", "X-0 Z-.5;\nX1", "U123456789012345678\n"]
-        {
+        for text in [
+            "G1 X40.2005 Z-0.0131\n",
+            "  N10G01X.5Z5.F200 \r\n",
+            "X-0 Z-.5;\n",
+            "U123456789012345678\n",
+            "X-194.9334 Z1234567.8\n",
+            "X-123.45678 Z12345678\n",
+            "X12345678. Z.12345678 F1234567\n",
+        ] {
             assert!(read(text).is_some(), "{text}");
         }
         let (end, line) = read("N5 X1. Z2.;\r\nG0").expect("is short");

@@ -109,6 +109,12 @@ impl Length {
         Self { nm: self.nm.saturating_abs() }
     }
 
+    /// Whether the distance from zero is less than so many nanometres.
+    #[inline]
+    pub const fn is_below(self, limit_nm: i64) -> bool {
+        -limit_nm < self.nm && self.nm < limit_nm
+    }
+
     /// −1, 0 or 1.
     pub const fn signum(self) -> i64 {
         self.nm.signum()

@@ -172,7 +172,7 @@ impl Core {
                 return Err(self.alarm("data-setting-format", target));
             };
             let value = if is_increment { before + value } else { value };
-            if value.abs().nm() >= self.settings.length_limit_nm {
+            if !value.is_below(self.settings.length_limit_nm) {
                 return Err(self.alarm("data-out-of-range", word));
             }
             values.push((axis, value));
@@ -182,7 +182,7 @@ impl Core {
                 return Err(self.alarm("data-setting-format", target));
             };
             let value = if is_increment { before + value } else { value };
-            if value.abs().nm() >= self.settings.length_limit_nm {
+            if !value.is_below(self.settings.length_limit_nm) {
                 return Err(self.alarm("data-out-of-range", word));
             }
             values.push((axis, value));

@@ -190,7 +190,7 @@ impl Core {
     }
 
     fn is_zero_value(&self, length: Length) -> bool {
-        length.abs().nm() < self.settings.length_limit_nm
+        length.is_below(self.settings.length_limit_nm)
     }
 
     /// Millimetres in the unit of the program.
