@@ -147,6 +147,15 @@ pub enum RapidPath {
     EachAxis,
     /// A straight line in the shortest time.
     Straight,
+    /// The way to a reference point: as [`RapidPath::EachAxis`], at the rates of the reference return.
+    Home,
+}
+
+impl RapidPath {
+    /// Whether the path is a straight line; else the shorter way ends first.
+    pub const fn is_straight(self) -> bool {
+        matches!(self, Self::Straight)
+    }
 }
 
 /// The form of a cutting move. Start and end are exact; the radius is the distance of the centre from them.

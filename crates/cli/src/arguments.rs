@@ -8,6 +8,7 @@ use clap_complete::Shell;
 use turnwright_control::SectionSpot;
 use turnwright_export::mesh::CHORD_MM;
 
+use crate::operator::{OperatorActions, PanelOptions};
 use crate::output::PartFile;
 use crate::speech::Speech;
 
@@ -250,7 +251,8 @@ pub(crate) struct PartOptions {
 /// Writes where the axes are at every tick, with acceleration and jerk, as a table (CSV or Parquet).
 ///
 /// Lengths are millimetres, X is a diameter, places are those of the tool tip in work coordinates. In polar and
-/// cylindrical interpolation X and V are those of the virtual plane.
+/// cylindrical interpolation X and V are those of the virtual plane. The operator may come between: overrides, dry run,
+/// single block and feed hold, from the start or at any second.
 #[derive(Debug, Args)]
 #[command(after_long_help = examples("motion"))]
 pub(crate) struct Motion {
@@ -262,6 +264,10 @@ pub(crate) struct Motion {
     /// The table; - for standard output, as CSV
     #[arg(short, long, value_name = "OUT.csv|OUT.parquet", value_parser = samples_name)]
     pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) panel: PanelOptions,
+    #[command(flatten)]
+    pub(crate) actions: OperatorActions,
     #[command(flatten)]
     pub(crate) machine: Machine,
 }
@@ -282,6 +288,8 @@ pub(crate) struct Time {
     /// Form of the answer
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
     pub(crate) format: LookupFormat,
+    #[command(flatten)]
+    pub(crate) panel: PanelOptions,
     #[command(flatten)]
     pub(crate) machine: Machine,
 }

@@ -12,6 +12,7 @@ mod environment;
 mod execution;
 mod fault;
 mod finding;
+mod operator;
 mod output;
 mod part;
 mod passes;

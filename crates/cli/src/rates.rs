@@ -3,7 +3,7 @@
 use turnwright_control::{Machine, Parameters};
 use turnwright_motion::{
     AccDec, Arrival, AuxiliaryTimes, AxisDynamics, Dynamics, Gear, GearSelection, Gears, MachineRates,
-    Orientation, RapidSurfaceSpeed, SpeedWait,
+    Orientation, PanelRules, RapidSurfaceSpeed, SpeedWait,
 };
 use turnwright_units::Rpm;
 
@@ -22,6 +22,7 @@ pub(crate) fn rates(machine: &Machine, parameters: &Parameters, stops_optionally
             .map_or(usual.cutting_max_c_deg_per_min, |axis| axis.cutting_max_deg_per_min),
         rapid_x_mm_per_min: machine.rapid_x_mm_per_min,
         rapid_z_mm_per_min: machine.rapid_z_mm_per_min,
+        home_mm_per_min: parameters.value("reference-return-rate").max(0.0),
         cutting_max_mm_per_min: machine.cutting_max_mm_per_min,
         tool_change_s: machine.tool_change_s,
         spindle_ramp_rpm_per_s: machine.spindle_ramp_rpm_per_s,
@@ -51,6 +52,14 @@ pub(crate) fn rates(machine: &Machine, parameters: &Parameters, stops_optionally
             RapidSurfaceSpeed::AtEndPoint
         },
         dynamics: Some(dynamics(machine)),
+        panel_rules: PanelRules {
+            rapid_lowest_per_min: parameters.value("rapid-rate-lowest"),
+            rapids_heed_feed: parameters.bit("rapid-stops-with-feed-override"),
+            dry_rapids: parameters.bit("dry-run-of-rapids"),
+            dry_threads: !parameters.bit("dry-run-off-in-threads"),
+            ..usual.panel_rules
+        },
+        ..usual
     }
 }
 

@@ -314,7 +314,7 @@ impl PathRecorder {
         }
         let corner = match path {
             RapidPath::Straight => None,
-            RapidPath::EachAxis => self.corner(to),
+            RapidPath::EachAxis | RapidPath::Home => self.corner(to),
         };
         let (start, end) = (point(self.at), point(to));
         self.begin_move(command, None, if corner.is_some() { 2 } else { 1 });

@@ -16,7 +16,7 @@
 //!
 //! Source: stored stroke checks 1 to 3, both families.
 
-use turnwright_canon::{Action, RapidPath, Shape, Turn};
+use turnwright_canon::{Action, Shape, Turn};
 use turnwright_control::{Axis, MachineAxes, Parameters};
 use turnwright_diagnostics::{Diagnostic, Place};
 use turnwright_geometry::{Point, sweep_rad};
@@ -329,7 +329,7 @@ impl Core {
         let (from, to) = (machine(from), machine(to));
         let whole = Stretch { from, to, arc: None };
         match action {
-            Action::Rapid { path: RapidPath::EachAxis, .. } => {
+            Action::Rapid { path, .. } if !path.is_straight() => {
                 let bend = self.bend(from, to);
                 self.check_stretch(Stretch { from, to: bend, arc: None }, to, others)?;
                 self.check_stretch(Stretch { from: bend, to, arc: None }, to, others)

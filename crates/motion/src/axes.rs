@@ -8,9 +8,9 @@ use turnwright_canon::{Interpolation, OtherAxes, Shape, SidePlane, Turn};
 use turnwright_geometry::Point;
 use turnwright_units::{Angle, Length, Position, WorkTip};
 
-use crate::MachineRates;
 use crate::leg::{B, C, Place, V, Y};
 use crate::path::ArcPath;
+use crate::{Dynamics, MachineRates};
 
 /// Where the axes beyond X and Z are.
 #[derive(Clone, Copy, Debug, Default)]
@@ -111,22 +111,24 @@ impl AxisPlaces {
     }
 
     /// A rapid move whose way in X and Z is `length_mm`.
-    pub(crate) fn rapid(&self, length_mm: f64, others: &OtherAxes, rates: &MachineRates) -> AxisWay {
+    pub(crate) fn rapid(
+        &self,
+        length_mm: f64,
+        others: &OtherAxes,
+        rates: &Place,
+        dynamics: Option<&Dynamics>,
+    ) -> AxisWay {
         let side_mm = self.side_mm(others);
         let length_mm = libm::hypot(length_mm, side_mm);
-        let side_rate = if others.v.is_some() { rates.rapid_x_mm_per_min } else { rates.rapid_y_mm_per_min };
         let side = if others.v.is_some() { V } else { Y };
-        let minutes_min = [
-            (side, side_mm, side_rate),
-            (C, Self::degrees(self.c, others.c), rates.rapid_c_deg_per_min),
-            (B, Self::degrees(self.b, others.b), rates.rapid_b_deg_per_min),
-        ]
-        .map(|(axis, way, rate)| match &rates.dynamics {
-            Some(dynamics) if way > 0.0 => dynamics.axes[axis].minutes(way, rate),
-            _ => at_rate(way, rate),
-        })
-        .into_iter()
-        .try_fold(0.0, |longest: f64, minutes| Some(longest.max(minutes?)));
+        let minutes_min =
+            [(side, side_mm), (C, Self::degrees(self.c, others.c)), (B, Self::degrees(self.b, others.b))]
+                .map(|(axis, way)| match dynamics {
+                    Some(dynamics) if way > 0.0 => dynamics.axes[axis].minutes(way, rates[axis]),
+                    _ => at_rate(way, rates[axis]),
+                })
+                .into_iter()
+                .try_fold(0.0, |longest: f64, minutes| Some(longest.max(minutes?)));
         AxisWay { length_mm, feed_mm: length_mm, minutes_min }
     }
 }

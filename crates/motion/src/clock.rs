@@ -6,7 +6,7 @@
 //! revolution with the spindle standing, no feed at all) has no known time: it counts no seconds and is
 //! counted in [`Clock::unknown_feeds`].
 
-use turnwright_canon::{Action, Command, Dwell, OtherAxes, RapidPath, Shape, SpindleWatch};
+use turnwright_canon::{Action, Command, Dwell, OtherAxes, PathMode, RapidPath, Shape, SpindleWatch};
 use turnwright_units::{Feed, Lead, Position, WorkTip};
 
 use crate::axes::AxisPlaces;
@@ -17,7 +17,7 @@ use crate::spindle::{Order, Shift, Spindle};
 use crate::surface::Slowness;
 use crate::tap::TapPace;
 use crate::totals::{Kind, SECONDS_MAX, Totals};
-use crate::{MachineRates, RapidSurfaceSpeed, SpeedWait};
+use crate::{MachineRates, Panel, RapidSurfaceSpeed, SpeedWait};
 
 /// Differences of speed below this are rounding, rpm.
 const RPM_NEAR: f64 = 1e-6;
@@ -78,6 +78,9 @@ pub struct Timing {
 #[derive(Clone, Debug)]
 pub struct Clock {
     rates: MachineRates,
+    /// The operator has set the panel otherwise than usual.
+    is_manned: bool,
+    mode: PathMode,
     position: Position<WorkTip>,
     axes: AxisPlaces,
     tool: Option<u32>,
@@ -107,6 +110,8 @@ impl Clock {
     pub fn new(start: Position<WorkTip>, rates: MachineRates) -> Self {
         Self {
             rates,
+            is_manned: rates.panel != Panel::default(),
+            mode: PathMode::Continuous,
             position: start,
             axes: AxisPlaces::default(),
             tool: None,
@@ -153,11 +158,42 @@ impl Clock {
         self.spindle.order
     }
 
-    /// Rapid traverse of each axis, per minute.
-    pub(crate) const fn rapid_rates(&self) -> Place {
+    /// Rapid traverse of each axis on such a way, per minute, at 100 %.
+    pub(crate) fn rapid_rates(&self, path: RapidPath) -> Place {
         let rates = &self.rates;
         let (x, z, y) = (rates.rapid_x_mm_per_min, rates.rapid_z_mm_per_min, rates.rapid_y_mm_per_min);
-        [x, z, y, rates.rapid_c_deg_per_min, rates.rapid_b_deg_per_min, x]
+        let (c, b) = (rates.rapid_c_deg_per_min, rates.rapid_b_deg_per_min);
+        match path {
+            RapidPath::Home if rates.home_mm_per_min > 0.0 => {
+                let home = rates.home_mm_per_min;
+                [home, home, home, c, b, home]
+            }
+            _ => [x, z, y, c, b, x],
+        }
+    }
+
+    /// The same as the operator has it.
+    fn rapid_rates_now(&self, path: RapidPath) -> Place {
+        let rates = self.rapid_rates(path);
+        if !self.is_manned {
+            return rates;
+        }
+        rates.map(|rate| self.rates.panel.rapid_rate(&self.rates.panel_rules, rate))
+    }
+
+    /// The panel is set otherwise from here on.
+    pub(crate) fn set_panel(&mut self, panel: Panel) {
+        (self.rates.panel, self.is_manned) = (panel, panel != Panel::default());
+    }
+
+    /// The speed of threads and taps, while a dry run acts on them, mm/min.
+    pub(crate) fn dry_thread(&self) -> Option<f64> {
+        if self.is_manned { self.rates.panel.dry_thread(&self.rates.panel_rules) } else { None }
+    }
+
+    /// Time goes by that no command takes.
+    pub(crate) fn let_pass(&mut self, seconds: f64) {
+        self.spindle.run(seconds.max(0.0));
     }
 
     /// What the last command began with, when it changed the gear.
@@ -263,6 +299,7 @@ impl Clock {
                 self.cut(*to, shape, *feed, others.as_deref(), path)
             }
             Action::Thread { to, lead, .. } if self.is_led => self.tap(*to, *lead),
+            Action::Thread { to, shape, .. } if self.dry_thread().is_some() => self.dry_cut(*to, shape),
             Action::Thread { to, shape, lead, lead_end, is_chained, .. } => {
                 if !is_chained {
                     self.thread_rpm = None;
@@ -309,9 +346,11 @@ impl Clock {
                 self.watch = *watch;
                 self.still(Kind::Other, 0.0)
             }
-            Action::PathMode(_) | Action::Coupling(_) | Action::Message(_) | Action::Output(_) => {
+            Action::PathMode(mode) => {
+                self.mode = *mode;
                 self.still(Kind::Other, 0.0)
             }
+            Action::Coupling(_) | Action::Message(_) | Action::Output(_) => self.still(Kind::Other, 0.0),
         };
         if timing.kind != Kind::Threading {
             self.thread_rpm = None;
@@ -375,13 +414,14 @@ impl Clock {
     fn rapid(&mut self, to: Position<WorkTip>, path: RapidPath, others: Option<&OtherAxes>) -> Timing {
         let way = to - self.position;
         let (dx_mm, dz_mm) = (way.x.to_mm().abs(), way.z.to_mm().abs());
-        let (rate_x, rate_z) = (self.rates.rapid_x_mm_per_min, self.rates.rapid_z_mm_per_min);
+        let rates = self.rapid_rates_now(path);
+        let (rate_x, rate_z) = (rates[X], rates[Z]);
         let at_rates = (minutes(dx_mm, rate_x), minutes(dz_mm, rate_z));
         let (minutes, length_mm) = match at_rates {
             (Some(x), Some(z)) => {
                 let length_mm = match path {
                     RapidPath::Straight => libm::hypot(dx_mm, dz_mm),
-                    RapidPath::EachAxis => {
+                    RapidPath::EachAxis | RapidPath::Home => {
                         // Both axes until the nearer end, then the other one alone.
                         let both = x.min(z);
                         let together = |way_mm: f64, minutes: f64| {
@@ -399,14 +439,14 @@ impl Clock {
         let (minutes, length_mm) = match others {
             None => (minutes, length_mm),
             Some(others) => {
-                let way = self.axes.rapid(length_mm, others, &self.rates);
+                let way = self.axes.rapid(length_mm, others, &rates, self.rates.dynamics.as_ref());
                 (longer(minutes, way.minutes_min), way.length_mm)
             }
         };
         let minutes = match &self.rates.dynamics {
             // At a rate that is none, the time is as little known as without.
             Some(dynamics) if minutes.is_some() && length_mm > 0.0 => {
-                self.rapid_minutes(dynamics, [dx_mm, dz_mm], path, others)
+                self.rapid_minutes(dynamics, [dx_mm, dz_mm], path, others, &rates)
             }
             _ => minutes,
         };
@@ -439,10 +479,11 @@ impl Clock {
         [dx_mm, dz_mm]: [f64; 2],
         path: RapidPath,
         others: Option<&OtherAxes>,
+        rates: &Place,
     ) -> Option<f64> {
-        let (rate_x, rate_z) = (self.rates.rapid_x_mm_per_min, self.rates.rapid_z_mm_per_min);
+        let (rate_x, rate_z) = (rates[X], rates[Z]);
         let section = match path {
-            RapidPath::EachAxis => {
+            RapidPath::EachAxis | RapidPath::Home => {
                 longer(dynamics.axes[X].minutes(dx_mm, rate_x), dynamics.axes[Z].minutes(dz_mm, rate_z))
             }
             RapidPath::Straight => {
@@ -453,7 +494,8 @@ impl Clock {
                 Some(if length_mm > 0.0 { limits.rest_to_rest_s(length_mm, per_second) / 60.0 } else { 0.0 })
             }
         };
-        let others = others.map_or(Some(0.0), |others| self.axes.rapid(0.0, others, &self.rates).minutes_min);
+        let of = |others| self.axes.rapid(0.0, others, rates, Some(dynamics)).minutes_min;
+        let others = others.map_or(Some(0.0), of);
         longer(section, others).map(|minutes| minutes + dynamics.in_position_s / 60.0)
     }
 
@@ -473,6 +515,7 @@ impl Clock {
         let (length_mm, feed_mm) =
             axes.as_ref().map_or((length_mm, length_mm), |way| (way.length_mm, way.feed_mm));
         let cutting_max = self.rates.cutting_max_mm_per_min;
+        let feed = if self.is_manned { self.rates.panel.feed(self.mode, feed) } else { feed };
         // Degrees are no way in millimetres: with rotary axes only the length is held below the limit.
         let fastest = if axes.is_some() { f64::INFINITY } else { cutting_max };
         let known = match (feed, self.spindle.order) {
@@ -573,6 +616,22 @@ impl Clock {
             waited_s,
             length_mm: known.length_mm,
             rpm: turning(RpmRange::between(rpm, rpm)),
+        }
+    }
+
+    /// A thread in a dry run that acts on it: a way like any other, out of step with the spindle.
+    fn dry_cut(&mut self, to: Position<WorkTip>, shape: &Shape) -> Timing {
+        let length_mm = stretches(self.position, to, shape).map(|piece| piece.length_mm()).sum();
+        let per_minute = self.dry_thread().unwrap_or(0.0).min(self.rates.cutting_max_mm_per_min);
+        let way = self.known_minutes(minutes(length_mm, per_minute), length_mm);
+        self.spindle.run(way.seconds);
+        Timing {
+            kind: Kind::Threading,
+            from: self.position,
+            seconds: way.seconds,
+            waited_s: 0.0,
+            length_mm: way.length_mm,
+            rpm: None,
         }
     }
 

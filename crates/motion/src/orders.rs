@@ -55,8 +55,14 @@ impl Clock {
     /// What the next command orders when it is a cut at a known speed; `None` for all else.
     #[inline]
     pub(crate) fn cut_order<'a>(&self, action: &'a Action) -> Option<CutOrder<'a>> {
-        let Action::Feed { to, shape, feed, others } = action else { return None };
-        let (from, to, others) = (self.position(), *to, others.as_deref());
+        let (to, shape, feed, others) = match action {
+            Action::Feed { to, shape, feed, others } => (*to, shape, Some(*feed), others.as_deref()),
+            Action::Thread { to, shape, .. } if !self.is_led() && self.dry_thread().is_some() => {
+                (*to, shape, None, None)
+            }
+            _ => return None,
+        };
+        let from = self.position();
         let path = CutPath::new(from, to, shape);
         let feed_mm = match others {
             None => path.length_mm,
@@ -65,8 +71,20 @@ impl Clock {
         if feed_mm <= 0.0 || !feed_mm.is_finite() {
             return None;
         }
-        let spindle = self.spindle_order();
-        let order = match (feed, spindle) {
+        let order = match feed.and_then(|feed| self.order_of(feed)) {
+            Some(order) => order,
+            // In a dry run feed per revolution needs no spindle.
+            None => Order::Speed(self.rates().panel.dry_run_mm_per_min.filter(|feed| *feed > 0.0)? / 60.0),
+        };
+        let start = self.place();
+        let end = Self::place_after(start, to, others);
+        Some(CutOrder { from, to, shape, start, end, path, feed_mm, order, has_others: others.is_some() })
+    }
+
+    /// What a feed orders; `None` when nothing would move.
+    #[inline]
+    fn order_of(&self, feed: Feed) -> Option<Order> {
+        let order = match (feed, self.spindle_order()) {
             (Feed::PerMinute(feed), _) => Order::Speed(feed.0.to_mm() / 60.0),
             (Feed::PerRevolution(feed), crate::spindle::Order::Constant(rpm))
                 if self.cuts_at_once() && rpm > 0.0 =>
@@ -82,14 +100,11 @@ impl Clock {
                 self.order_along(feed.0.to_mm(), law)?
             }
         };
-        if let Order::Speed(speed) = order
-            && !(speed.is_finite() && speed > 0.0)
-        {
-            return None;
-        }
-        let start = self.place();
-        let end = Self::place_after(start, to, others);
-        Some(CutOrder { from, to, shape, start, end, path, feed_mm, order, has_others: others.is_some() })
+        let is_motion = match order {
+            Order::Speed(speed) => speed.is_finite() && speed > 0.0,
+            Order::Surface { .. } => true,
+        };
+        is_motion.then_some(order)
     }
 
     /// Feed by the revolutions of a spindle whose speed changes.

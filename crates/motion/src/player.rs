@@ -22,42 +22,7 @@ use crate::tap::TapPace;
 use crate::thread::ThreadPlan;
 use crate::thread_chain::ThreadChain;
 use crate::totals::Kind;
-use crate::{AXIS_COUNT, Dynamics, MachineRates, RapidSurfaceSpeed};
-
-/// What the operator has set. It may change at any tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Panel {
-    /// Feed override, 1 for 100 %. Threads do not heed it.
-    pub feed: f64,
-    /// Rapid override, 1 for 100 %.
-    pub rapid: f64,
-    /// Feed hold: the axes come to rest. A thread is finished first.
-    pub is_held: bool,
-    /// Dry run: cuts go at this speed, mm/min, whatever their feed.
-    pub dry_run_mm_per_min: Option<f64>,
-    /// The axes come to rest behind each block.
-    pub single_block: bool,
-}
-
-impl Default for Panel {
-    fn default() -> Self {
-        Self { feed: 1.0, rapid: 1.0, is_held: false, dry_run_mm_per_min: None, single_block: false }
-    }
-}
-
-impl Panel {
-    fn cutting(&self) -> (Feedrate, bool) {
-        let order = match self.dry_run_mm_per_min {
-            Some(mm_per_min) => Feedrate::Fixed(mm_per_min / 60.0),
-            None => Feedrate::Override(self.feed),
-        };
-        (order, self.is_held || self.dry_run_mm_per_min.is_none() && self.feed <= 0.0)
-    }
-
-    fn rapid(&self) -> (Feedrate, bool) {
-        (Feedrate::Override(self.rapid), self.is_held || self.rapid <= 0.0)
-    }
-}
+use crate::{AXIS_COUNT, Dynamics, MachineRates, Panel, RapidSurfaceSpeed, ThreadHold};
 
 /// The machine at one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,6 +50,8 @@ pub struct Sample {
 struct Block {
     source: u32,
     line: u32,
+    /// What it is when it cuts.
+    kind: Kind,
 }
 
 /// Plays commands.
@@ -98,6 +65,10 @@ pub struct Player {
     now_s: f64,
     panel: Panel,
     changes: VecDeque<(f64, Panel)>,
+    /// The axes come to rest behind the last cut.
+    is_block_over: bool,
+    /// A feed hold came in a thread and does not act yet.
+    is_hold_deferred: bool,
     run: CuttingRun,
     /// The legs of the command that is being taken up.
     legs: Vec<Leg>,
@@ -130,9 +101,11 @@ impl Player {
             rate_hz,
             tick: 0,
             now_s: 0.0,
-            panel: Panel::default(),
+            panel: rates.panel,
             changes: VecDeque::new(),
-            run: CuttingRun::new(dynamics, true),
+            is_block_over: false,
+            is_hold_deferred: false,
+            run: CuttingRun::new(dynamics, true, true),
             legs: Vec::new(),
             has_others: false,
             mode: PathMode::Continuous,
@@ -164,25 +137,46 @@ impl Player {
 
     /// The next command; `sink` gets the samples that are final.
     pub fn push(&mut self, command: &Command, sink: &mut dyn FnMut(&Sample)) {
-        let block = Block { source: command.origin.source, line: command.origin.line };
+        if self.is_stuck {
+            return;
+        }
+        let kind =
+            if matches!(command.action, Action::Thread { .. }) { Kind::Threading } else { Kind::Cutting };
+        let block = Block { source: command.origin.source, line: command.origin.line, kind };
         if !matches!(&command.action, Action::Thread { is_chained: true, .. }) {
             self.play_thread(sink);
         }
+        // In a dry run that acts on them threads are cuts like any other.
+        let is_dry_thread = kind == Kind::Threading
+            && self.thread.is_empty()
+            && !self.clock.is_led()
+            && self.clock.dry_thread().is_some();
         match &command.action {
-            Action::Feed { others, .. } => {
+            Action::Feed { .. } | Action::Thread { .. } if kind == Kind::Cutting || is_dry_thread => {
+                let others = command.action.others();
                 let goes_on = self.run.is_open()
                     && self.mode != PathMode::ExactStop
-                    && !self.panel.single_block
+                    && !self.is_block_over
                     && others.is_some() == self.has_others
                     && !self.clock.would_wait();
                 if !goes_on {
                     self.end_run(sink);
                 }
                 self.cut(command, block, sink);
+                self.is_block_over = self.panel.single_block && !command.origin.runs_on;
+                if self.is_hold_deferred && kind == Kind::Cutting {
+                    self.end_run(sink);
+                    self.end_deferral(command, sink);
+                }
                 return;
             }
             Action::PathMode(mode) => {
+                if (*mode == PathMode::Tapping) != (self.mode == PathMode::Tapping) {
+                    // Overrides begin or cease to act.
+                    self.end_run(sink);
+                }
                 self.mode = *mode;
+                self.clock.advance(command);
                 return;
             }
             Action::Message(_) | Action::Output(_) => return,
@@ -191,16 +185,19 @@ impl Player {
         self.end_run(sink);
         match &command.action {
             Action::Rapid { to, path, others } => {
-                self.rapid(command, *to, *path, others.as_deref(), block, sink)
+                self.rapid(command, *to, *path, others.as_deref(), block, sink);
+                self.end_deferral(command, sink);
             }
             Action::Thread { to, lead, .. } if self.clock.is_led() => {
                 self.tap(command, *to, *lead, block, sink)
             }
             Action::Thread { .. } => self.thread.add(command, &mut self.clock, &self.dynamics),
             _ => {
+                self.wait_while_held(block, sink);
                 let timing = self.clock.advance(command);
                 let shift_s = self.shift_gear(timing.kind, block, sink);
                 self.stand(timing.seconds - shift_s, timing.kind, block, sink);
+                self.end_deferral(command, sink);
             }
         }
         self.smoother.stand(&self.clock.place());
@@ -233,7 +230,43 @@ impl Player {
                 (self.panel, has_changed) = (panel, true);
             }
         }
+        if has_changed {
+            // The clock counts at 100 %; what it passes over and how is the same.
+            let dry_run_mm_per_min = self.panel.dry_run_mm_per_min;
+            self.clock.set_panel(Panel { dry_run_mm_per_min, ..Panel::default() });
+        }
         has_changed
+    }
+
+    /// The panel as it acts now.
+    fn acting_panel(&self) -> Panel {
+        Panel { is_held: self.panel.is_held && !self.is_hold_deferred, ..self.panel }
+    }
+
+    /// Behind a move that follows a thread a feed hold from that thread acts.
+    fn end_deferral(&mut self, command: &Command, sink: &mut dyn FnMut(&Sample)) {
+        if self.is_hold_deferred && !command.origin.runs_on {
+            self.is_hold_deferred = false;
+            let block = Block { source: command.origin.source, line: command.origin.line, kind: Kind::Other };
+            self.wait_while_held(block, sink);
+        }
+    }
+
+    /// Nothing that is no move begins while the operator holds.
+    fn wait_while_held(&mut self, block: Block, sink: &mut dyn FnMut(&Sample)) {
+        let place = self.clock.place();
+        loop {
+            self.look_at_panel();
+            if !self.acting_panel().is_held || self.is_stuck {
+                return;
+            }
+            if self.changes.is_empty() {
+                self.is_stuck = true;
+                return;
+            }
+            self.give(place, 0.0, Kind::Stop, block, sink);
+            self.now_s = self.next_s();
+        }
     }
 
     fn give(
@@ -276,9 +309,14 @@ impl Player {
     /// Stands still.
     fn stand(&mut self, seconds: f64, kind: Kind, block: Block, sink: &mut dyn FnMut(&Sample)) {
         let place = self.clock.place();
-        let end_s = self.now_s + seconds;
+        let stops = kind == Kind::Dwell && self.clock.rates().panel_rules.hold_stops_dwell;
+        let mut end_s = self.now_s + seconds;
         while self.next_s() < end_s && !self.is_stuck {
             self.look_at_panel();
+            if stops && self.acting_panel().is_held {
+                self.is_stuck = self.changes.is_empty();
+                end_s += 1.0 / self.rate_hz;
+            }
             self.give(place, 0.0, kind, block, sink);
         }
         self.now_s = end_s;
@@ -302,7 +340,7 @@ impl Player {
                 spindle.rpm = self.clock.spindle_order().rpm_at(self.clock.position().x.to_mm());
             }
             self.smoother.stand(&self.clock.place());
-            let (feedrate, is_held) = self.panel.cutting();
+            let (feedrate, is_held) = self.acting_panel().cutting(self.mode);
             self.run.begin(self.dynamics.cutting(self.has_others), spindle);
             self.run.pace.preset(feedrate, is_held);
         }
@@ -335,7 +373,7 @@ impl Player {
                 _ => {}
             }
             if self.look_at_panel() {
-                let (feedrate, is_held) = self.panel.cutting();
+                let (feedrate, is_held) = self.acting_panel().cutting(self.mode);
                 self.run.pace.interrupt(time_s, feedrate, is_held);
                 self.run.plan();
                 continue;
@@ -349,8 +387,9 @@ impl Player {
             let passed = self.run.forget_before(time_s, state.at_mm);
             self.blocks.drain(..passed.min(self.blocks.len().saturating_sub(1)));
             let place = self.smoother.next(&place);
-            let block = self.blocks.front().copied().unwrap_or(Block { source: 0, line: 0 });
-            self.give(place, state.speed_mm_per_s, Kind::Cutting, block, sink);
+            let none = Block { source: 0, line: 0, kind: Kind::Cutting };
+            let block = self.blocks.front().copied().unwrap_or(none);
+            self.give(place, state.speed_mm_per_s, block.kind, block, sink);
         }
     }
 
@@ -376,10 +415,17 @@ impl Player {
         sink: &mut dyn FnMut(&Sample),
     ) {
         let (from, end) = (self.clock.place(), Clock::place_after(self.clock.place(), to, others));
-        let rates = self.clock.rapid_rates();
+        let rates = self.clock.rapid_rates(path);
+        let rules = self.clock.rates().panel_rules;
         let way: Place = std::array::from_fn(|axis| end[axis] - from[axis]);
-        let is_straight = path == RapidPath::Straight;
+        let is_straight = path.is_straight();
         let section_mm = libm::hypot(way[X], way[Z]);
+        // How far the quickest axis of a lane goes on a millimetre of its way.
+        let per_way: Place = std::array::from_fn(|axis| match axis {
+            X if is_straight && section_mm > 0.0 => way[X].abs().max(way[Z].abs()) / section_mm,
+            _ => 1.0,
+        });
+        let panel = self.acting_panel();
         for axis in 0..AXIS_COUNT {
             let lane = &mut self.lanes[axis];
             let (length, speed, limits) = match axis {
@@ -392,7 +438,7 @@ impl Player {
                 _ => (way[axis].abs(), rates[axis], self.dynamics.axes[axis].along(1.0)),
             };
             lane.begin(limits);
-            let (feedrate, is_held) = self.panel.rapid();
+            let (feedrate, is_held) = panel.rapid(&rules, per_way[axis]);
             lane.preset(feedrate, is_held);
             let speed = speed / 60.0;
             if length > 0.0 && speed.is_finite() && speed > 0.0 {
@@ -401,7 +447,7 @@ impl Player {
             }
             lane.close();
         }
-        self.clock.advance(command);
+        let timing = self.clock.advance(command);
         loop {
             let time_s = self.next_s() - self.now_s;
             self.lanes.iter_mut().for_each(Pace::plan);
@@ -410,12 +456,17 @@ impl Player {
                 let settled = duration + if duration > 0.0 { self.dynamics.in_position_s } else { 0.0 };
                 if time_s >= settled {
                     self.now_s += settled;
+                    // The spindle had more time than at 100 %.
+                    self.clock.let_pass(settled - timing.seconds);
                     return;
                 }
             }
             if self.look_at_panel() {
-                let (feedrate, is_held) = self.panel.rapid();
-                self.lanes.iter_mut().for_each(|lane| lane.interrupt(time_s, feedrate, is_held));
+                let panel = self.acting_panel();
+                for (lane, per_way) in self.lanes.iter_mut().zip(per_way) {
+                    let (feedrate, is_held) = panel.rapid(&rules, per_way);
+                    lane.interrupt(time_s, feedrate, is_held);
+                }
                 continue;
             }
             let is_resting = |lane: &Pace| lane.duration_s().is_some() || lane.is_resting(time_s);
@@ -495,7 +546,11 @@ impl Player {
     /// Plays the chain of threads that waits.
     fn play_thread(&mut self, sink: &mut dyn FnMut(&Sample)) {
         let Some(chain) = self.thread.take() else { return };
-        let block = Block { source: chain.source, line: chain.lines[0] };
+        let block = Block { source: chain.source, line: chain.lines[0], kind: Kind::Threading };
+        self.wait_while_held(block, sink);
+        if self.is_stuck {
+            return;
+        }
         self.stand(chain.waited_s, Kind::Spindle, block, sink);
         match ThreadPlan::new(&chain.stretches, chain.rpm) {
             Ok(plan) => {
@@ -526,6 +581,8 @@ impl Player {
             Err(_) => self.stand(chain.seconds, Kind::Threading, block, sink),
         }
         self.smoother.stand(&self.clock.place());
+        let ends_here = self.clock.rates().panel_rules.thread_hold == ThreadHold::AtEnd && !chain.runs_on;
+        self.is_hold_deferred = self.panel.is_held && !ends_here;
     }
 
     /// When the last sample was.

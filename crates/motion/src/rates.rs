@@ -2,7 +2,7 @@
 
 use turnwright_units::Rpm;
 
-use crate::{Dynamics, Gears};
+use crate::{Dynamics, Gears, Panel, PanelRules};
 
 /// Which speed constant surface speed asks for during a rapid move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -91,6 +91,8 @@ pub struct MachineRates {
     pub rapid_z_mm_per_min: f64,
     /// Rapid traverse of a Y axis, mm per minute.
     pub rapid_y_mm_per_min: f64,
+    /// Rapid rate of X (mm of radius), Z and Y on the way to a reference point; 0: that of positioning.
+    pub home_mm_per_min: f64,
     /// Rapid traverse of a C axis, degrees per minute.
     pub rapid_c_deg_per_min: f64,
     /// Rapid traverse of a B axis, degrees per minute.
@@ -131,6 +133,10 @@ pub struct MachineRates {
     pub rapid_surface_speed: RapidSurfaceSpeed,
     /// What the axes can do beyond their rates; `None`: they reach their rates at once.
     pub dynamics: Option<Dynamics>,
+    /// How the operator has set the panel from the start.
+    pub panel: Panel,
+    /// What the control makes of the panel.
+    pub panel_rules: PanelRules,
 }
 
 impl Default for MachineRates {
@@ -139,6 +145,7 @@ impl Default for MachineRates {
             rapid_x_mm_per_min: 12_000.0,
             rapid_z_mm_per_min: 16_000.0,
             rapid_y_mm_per_min: 8_000.0,
+            home_mm_per_min: 0.0,
             rapid_c_deg_per_min: 36_000.0,
             rapid_b_deg_per_min: 9_000.0,
             cutting_max_c_deg_per_min: 18_000.0,
@@ -159,6 +166,8 @@ impl Default for MachineRates {
             rpm_min_surface: 20,
             rapid_surface_speed: RapidSurfaceSpeed::AtEndPoint,
             dynamics: None,
+            panel: Panel::default(),
+            panel_rules: PanelRules::default(),
         }
     }
 }
@@ -173,6 +182,7 @@ impl MachineRates {
             ("rapid_x_mm_per_min", positive(self.rapid_x_mm_per_min)),
             ("rapid_z_mm_per_min", positive(self.rapid_z_mm_per_min)),
             ("rapid_y_mm_per_min", positive(self.rapid_y_mm_per_min)),
+            ("home_mm_per_min", not_negative(self.home_mm_per_min)),
             ("rapid_c_deg_per_min", positive(self.rapid_c_deg_per_min)),
             ("rapid_b_deg_per_min", positive(self.rapid_b_deg_per_min)),
             ("cutting_max_c_deg_per_min", positive(self.cutting_max_c_deg_per_min)),

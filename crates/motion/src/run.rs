@@ -36,15 +36,15 @@ pub(crate) struct CuttingRun {
 }
 
 impl CuttingRun {
-    /// To be played, with an operator who may come between, or for its times only.
-    pub(crate) fn new(dynamics: Dynamics, is_played: bool) -> Self {
+    /// To be played or for its times only; with an operator who may order another speed than the program, or without.
+    pub(crate) fn new(dynamics: Dynamics, is_played: bool, has_operator: bool) -> Self {
         Self {
             dynamics,
             pace: Pace::with_capacity(2 * LEGS_MAX, dynamics.cutting(false)),
             ends_mm: VecDeque::with_capacity(LEGS_MAX),
             legs: is_played.then(|| VecDeque::with_capacity(LEGS_MAX)),
             end_mm: 0.0,
-            corners: Corners::new(&dynamics, is_played),
+            corners: Corners::new(&dynamics, has_operator),
             current: None,
             spindle: TurningSpindle { rpm: 0.0, ramp_rpm_per_s: 0.0 },
             is_over: true,

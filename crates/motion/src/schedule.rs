@@ -14,7 +14,7 @@ use crate::clock::{Clock, SpindleStray, Timing};
 use crate::leg::Leg;
 use crate::orders::leg_limit;
 use crate::run::{CuttingRun, LEGS_MAX};
-use crate::{Dynamics, ESTIMATES, ESTIMATES_WITH_DYNAMICS, MachineRates};
+use crate::{Dynamics, ESTIMATES, ESTIMATES_WITH_DYNAMICS, MachineRates, Panel};
 
 /// A command, known or in the run that is being planned.
 #[derive(Debug)]
@@ -66,6 +66,10 @@ struct Planning {
     passed_s: f64,
     mode: PathMode,
     has_others: bool,
+    /// How the operator has set the panel.
+    panel: Panel,
+    /// In single-block operation the axes come to rest behind the last cut.
+    is_block_over: bool,
 }
 
 impl Schedule {
@@ -74,11 +78,13 @@ impl Schedule {
         let planning = rates.dynamics.filter(|dynamics| dynamics.first_fault().is_none()).map(|dynamics| {
             Box::new(Planning {
                 dynamics,
-                run: CuttingRun::new(dynamics, false),
+                run: CuttingRun::new(dynamics, false, rates.panel != Panel::default()),
                 legs: Vec::new(),
                 passed_s: 0.0,
                 mode: PathMode::Continuous,
                 has_others: false,
+                panel: rates.panel,
+                is_block_over: false,
             })
         });
         Self { clock: Clock::new(start, rates), planning, entries: Entries::default() }
@@ -106,15 +112,26 @@ impl Schedule {
             self.entries.add_known(command, timing);
             return;
         };
-        if let Action::PathMode(mode) = &command.action {
-            planning.mode = *mode;
-        }
         let goes_on = match &command.action {
+            // Overrides begin or cease to act.
+            Action::PathMode(mode)
+                if (*mode == PathMode::Tapping) != (planning.mode == PathMode::Tapping) =>
+            {
+                false
+            }
             Action::Feed { others, .. } => {
                 planning.run.is_open()
                     && planning.mode != PathMode::ExactStop
+                    && !planning.is_block_over
                     && others.is_some() == planning.has_others
                     && !self.clock.would_wait()
+            }
+            // A dry run passes threads as cuts.
+            Action::Thread { .. } => {
+                planning.run.is_open()
+                    && !planning.is_block_over
+                    && !planning.has_others
+                    && self.clock.dry_thread().is_some()
             }
             Action::PathMode(_) | Action::Message(_) | Action::Output(_) => {
                 planning.run.is_open() && self.entries.unknown_count() < 2 * LEGS_MAX
@@ -123,6 +140,9 @@ impl Schedule {
         };
         if !goes_on {
             planning.end_run(&mut self.clock, &mut self.entries);
+        }
+        if let Action::PathMode(mode) = &command.action {
+            planning.mode = *mode;
         }
         planning.add(command, &mut self.clock, &mut self.entries);
     }
@@ -143,7 +163,10 @@ impl Schedule {
 
 impl Planning {
     fn add(&mut self, command: Command, clock: &mut Clock, entries: &mut Entries) {
-        let Some(cut) = clock.cut_order(&command.action) else {
+        let (feedrate, is_held) = self.panel.cutting(self.mode);
+        // What stands for ever has no time.
+        let cut = if is_held { None } else { clock.cut_order(&command.action) };
+        let Some(cut) = cut else {
             let timing = clock.advance(&command);
             if self.run.is_open() {
                 entries.list.push_back(Entry { command, timing, legs: 0, is_complete: true });
@@ -165,8 +188,10 @@ impl Planning {
                 spindle.rpm = wanted_rpm;
             }
             self.run.begin(self.dynamics.cutting(has_others), spindle);
+            self.run.pace.preset(feedrate, false);
             self.passed_s = 0.0;
         }
+        self.is_block_over = self.panel.single_block && !command.origin.runs_on;
         let waiting = Timing { seconds: timing.waited_s, ..timing };
         entries.list.push_back(Entry { timing: waiting, command, legs: 0, is_complete: false });
         for leg in 0..self.legs.len() {

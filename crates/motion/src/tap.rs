@@ -8,6 +8,7 @@ use turnwright_units::{Lead, Position, WorkTip};
 use crate::clock::Clock;
 use crate::leg::{X, Z};
 use crate::planner::RunLimits;
+use crate::spindle::RPM_FENCE;
 
 /// A way of a tap.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +31,14 @@ impl TapPace {
         let ways = [way.x.to_mm().abs(), way.z.to_mm().abs()];
         let way_mm = ways[X].max(ways[Z]);
         let rpm = clock.spindle_order().rpm_at(from.x.to_mm());
-        let speed_mm_per_s = lead_mm * rpm / 60.0;
+        let speed_mm_per_s = match clock.dry_thread() {
+            // In a dry run the spindle is led at the speed of the axis, as far as it can follow.
+            Some(dry) => {
+                let rpm_max = clock.rates().rpm_max.map_or(RPM_FENCE, |rpm| f64::from(rpm.0));
+                dry.min(lead_mm * rpm_max) / 60.0
+            }
+            None => lead_mm * rpm / 60.0,
+        };
         if !(way_mm > 0.0 && speed_mm_per_s > 0.0 && speed_mm_per_s.is_finite()) {
             return None;
         }

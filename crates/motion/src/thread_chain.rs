@@ -1,6 +1,6 @@
 //! Thread moves that follow one another without a stop, until the last of them is known.
 
-use turnwright_canon::{Action, Command, Shape};
+use turnwright_canon::{Action, Command, RapidPath, Shape};
 use turnwright_geometry::Point;
 
 use crate::clock::Clock;
@@ -17,6 +17,8 @@ pub(crate) struct ThreadChain {
     /// Line of each link.
     pub(crate) lines: Vec<u32>,
     pub(crate) source: u32,
+    /// In single-block operation the control goes on behind its last move.
+    pub(crate) runs_on: bool,
     /// Speed of the spindle, rpm.
     pub(crate) rpm: f64,
     /// Part of a turn at which it starts.
@@ -85,7 +87,7 @@ impl ThreadChain {
             Shape::Arc { turn, centre } => Some(ArcPath::new(from_at, *to, *centre, *turn)),
             _ => None,
         };
-        let rates = clock.rapid_rates();
+        let rates = clock.rapid_rates(RapidPath::EachAxis);
         let direction = [way[X] / long_mm, way[Z] / long_mm, 0.0, 0.0, 0.0, 0.0];
         let slowest =
             |axis: usize| if direction[axis] > 0.0 { rates[axis] / direction[axis] } else { f64::INFINITY };
@@ -98,6 +100,12 @@ impl ThreadChain {
         });
         self.links.push(Link { from, to: end, arc, long, start });
         self.lines.push(command.origin.line);
+        self.runs_on = command.origin.runs_on;
+    }
+
+    /// Whether none waits.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.links.is_empty()
     }
 
     /// The chain that waits, if one does.

@@ -9,8 +9,8 @@ use turnwright_canon::{
 };
 use turnwright_motion::{
     ArcPath, Arrival, AuxiliaryTimes, BlockTime, BlockTimes, Clock, Dynamics, Gear, GearSelection, Gears,
-    Kind, LINES_MAX, MachineRates, Orientation, RapidSurfaceSpeed, SPIRAL_TOLERANCE, Schedule, SpeedWait,
-    Summary, TIME_TOLERANCE, Timing,
+    Kind, LINES_MAX, MachineRates, Orientation, Panel, PanelRules, RapidOverride, RapidSurfaceSpeed,
+    SPIRAL_TOLERANCE, Schedule, SpeedWait, Summary, TIME_TOLERANCE, Timing,
 };
 use turnwright_units::{
     Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position, Radius, Revolutions, Rpm, Seconds,
@@ -388,6 +388,20 @@ fn nothing_makes_a_time_that_is_no_number() {
             rpm_min_surface: 0,
             rapid_surface_speed: RapidSurfaceSpeed::AtPresentPoint,
             dynamics: None,
+            home_mm_per_min: rate(),
+            panel: Panel {
+                feed: rate(),
+                rapid: RapidOverride::Part(rate()),
+                is_held: round % 7 == 0,
+                dry_run_mm_per_min: Some(rate()).filter(|_| round % 4 == 0),
+                single_block: round % 2 == 0,
+            },
+            panel_rules: PanelRules {
+                rapid_lowest_per_min: rate(),
+                dry_rapids: round % 8 == 0,
+                dry_threads: round % 3 == 0,
+                ..PanelRules::default()
+            },
         };
         let mut clock = Clock::new(at(10.0, 10.0), rates);
         let mut summary = Summary::new();

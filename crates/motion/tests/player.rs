@@ -4,7 +4,7 @@
 use turnwright_canon::{
     Action, Command, Dwell, Origin, PathMode, RapidPath, Shape, SpindleSpeed, SpindleState, Turn,
 };
-use turnwright_motion::{Dynamics, Kind, MachineRates, Panel, Player, Sample, Schedule};
+use turnwright_motion::{Dynamics, Kind, MachineRates, Panel, Player, RapidOverride, Sample, Schedule};
 use turnwright_units::{
     Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position, Radius, Rpm, Seconds,
     SurfaceSpeed, WorkTip,
@@ -203,7 +203,7 @@ fn the_operator_changes_the_pace_within_all_limits() {
                 time,
                 Panel {
                     feed: random.between(0.0, 2.0),
-                    rapid: [0.02, 0.25, 0.5, 1.0][(random.next() % 4) as usize],
+                    rapid: [0.02, 0.25, 0.5, 1.0].map(RapidOverride::Part)[(random.next() % 4) as usize],
                     is_held: random.one_in(4),
                     dry_run_mm_per_min: random.one_in(4).then_some(3000.0),
                     single_block: random.one_in(5),

@@ -1,12 +1,13 @@
 //! `turnwright motion`: where the axes are, tick by tick.
 //!
 //! In: one program and a rate. Out: a table with a row a tick, CSV or Parquet by the end of the file's name, written as
-//! the plan becomes final: its length needs no memory. The program runs as with nobody at the panel.
+//! the plan becomes final: its length needs no memory. The panel is set from the start or at any second.
 
 use std::io::{self, Write};
 
 use turnwright_canon::{Action, Interpolation};
 use turnwright_control::MachineAxes;
+use turnwright_diagnostics::Diagnostic;
 use turnwright_export::formats::parquet::{Column, ColumnKind, ParquetTable};
 use turnwright_motion::{Kind, Player, Sample};
 use turnwright_units::write_fixed;
@@ -30,7 +31,9 @@ pub(crate) fn run(options: &Motion, printer: &Printer) -> Result<Status, Fault> 
     let machine = machine.limited_by(&session.control.parameters);
     let mut execution = Execution::new(&text, &session, &options.machine)?;
     let rates = rates(&machine, &session.control.parameters, options.machine.optional_stop);
+    let rates = options.panel.man(rates, &session.control)?;
     let mut player = Player::new(execution.interpreter().position(), rates, f64::from(options.rate));
+    options.actions.tell(&mut player, rates.panel, &session.control)?;
     let mut target = match &options.output {
         Some(path) if path.as_os_str() != "-" => Target::File(WholeFile::create(path, speech)?),
         _ => Target::Standard(io::stdout().lock()),
@@ -49,6 +52,10 @@ pub(crate) fn run(options: &Motion, printer: &Printer) -> Result<Status, Fault> 
     table.finish();
     target.write(&mut table.buffer)?;
     target.finish()?;
+    if player.is_stuck() {
+        let held = Diagnostic::warning("held-to-the-end").with("time", format!("{:.3}", table.last_s));
+        execution.warn(held);
+    }
     let findings = execution.findings();
     printer.findings(&findings, &text);
     Ok(findings.iter().map(|finding| finding.status()).max().unwrap_or(Status::Clean))
@@ -85,6 +92,8 @@ struct Table {
     has_others: bool,
     /// X and V are of a virtual plane: where the rotary axis is follows from them.
     is_virtual: bool,
+    /// Time of the last row.
+    last_s: f64,
     buffer: Vec<u8>,
     form: Form,
 }
@@ -119,11 +128,12 @@ impl Table {
             buffer.push(b'\n');
             Form::Csv
         };
-        Self { has_others, is_virtual: false, buffer, form }
+        Self { has_others, is_virtual: false, last_s: 0.0, buffer, form }
     }
 
     fn add(&mut self, sample: &Sample) {
         let [x, z, y, c, b, v] = sample.place;
+        self.last_s = sample.time_s;
         self.number(sample.time_s, 6);
         // X is a diameter, as everywhere.
         self.number(2.0 * x, 6);

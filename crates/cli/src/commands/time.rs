@@ -13,7 +13,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use turnwright_export::formats::time_svg::{TimePicture, write_time_svg};
-use turnwright_motion::{Kind, Totals};
+use turnwright_motion::{Kind, Panel, Totals};
 use turnwright_verify::Checks;
 use turnwright_verify::advice::Advisor;
 use turnwright_verify::cutting::CuttingData;
@@ -45,6 +45,9 @@ const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Times what was named.
 pub(crate) fn run(options: &Time, printer: &Printer) -> Result<Status, Fault> {
+    if options.panel.feed_override == Some(0.0) && options.panel.dry_run.is_none() {
+        return Err(Fault::Usage(printer.speech.get("time-without-feed").to_string()));
+    }
     let named = candidates(&options.files, printer.speech);
     match &named[..] {
         [Ok(path)] => one(path, options, printer),
@@ -85,6 +88,7 @@ fn one(path: &Path, options: &Time, printer: &Printer) -> Result<Status, Fault> 
     let checked = checks.finish(&session.setup);
 
     let rates = rates(&machine, &session.control.parameters, options.machine.optional_stop);
+    let rates = options.panel.man(rates, &session.control)?;
     let kept =
         Kept { timeline: wanted == Some(Form::Picture), table: wanted == Some(Form::Table), path: false };
     let mut measure = Measure::new(start, rates, kept);
@@ -96,7 +100,8 @@ fn one(path: &Path, options: &Time, printer: &Printer) -> Result<Status, Fault> 
         pour(table.as_mut(), measure, BUFFER_BYTES)
     };
     let (setup, asked) = (&checked.inferred.setup, &options.machine);
-    measure.advisor = Some(Advisor::new(setup, rates));
+    // Advice is for the program as it runs in production.
+    measure.advisor = (rates.panel == Panel::default()).then(|| Advisor::new(setup, rates));
     part::machined(&text, &session, asked, &checked.inferred, None, Some(&mut measure), &mut look)?;
     progress.finish();
     pour(table.as_mut(), &mut measure, 0)?;
@@ -225,6 +230,7 @@ fn timed(candidate: &Candidate, options: &Time, printer: &Printer) -> Timed {
         let machine = machine.limited_by(&session.control.parameters);
         let mut execution = Execution::new(&text, &session, &options.machine)?;
         let rates = rates(&machine, &session.control.parameters, options.machine.optional_stop);
+        let rates = options.panel.man(rates, &session.control)?;
         let mut measure = Measure::new(execution.interpreter().position(), rates, Kept::default());
         while let Some(command) = execution.next_command() {
             measure.add(command, None);

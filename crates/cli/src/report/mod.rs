@@ -18,7 +18,7 @@ use turnwright_export::passes::Cycle;
 use turnwright_export::path::PathRecorder;
 use turnwright_export::timeline::Timeline;
 use turnwright_motion::{
-    BlockTimes, Dynamics, Kind, MachineRates, Operation, OperationKind, Schedule, ShortLeadIn, Summary,
+    BlockTimes, Kind, MachineRates, Operation, OperationKind, Schedule, ShortLeadIn, Summary,
 };
 use turnwright_stock::Removed;
 use turnwright_units::{Length, Position, WorkTip, write_millimetres};
@@ -30,6 +30,7 @@ use turnwright_verify::part::Part;
 
 pub(crate) use self::times::totals_json;
 use crate::finding::Finding;
+use crate::operator::panel_sentences;
 use crate::session::Session;
 use crate::speech::Speech;
 
@@ -58,7 +59,7 @@ pub(crate) struct Measure {
     pub(crate) cutting: Option<CuttingRun>,
     /// What it found.
     pub(crate) advice: Vec<Advice>,
-    dynamics: Option<Dynamics>,
+    rates: MachineRates,
     /// The spindle is led with a tap.
     is_led: bool,
 }
@@ -92,7 +93,7 @@ impl Measure {
             advisor: None,
             cutting: None,
             advice: Vec::new(),
-            dynamics: rates.dynamics,
+            rates,
             is_led: false,
         }
     }
@@ -167,7 +168,7 @@ impl Measure {
                 self.is_led = *is_led;
             }
             // A tap that leads the spindle needs no way to get into step.
-            if let Some(dynamics) = self.dynamics.as_ref().filter(|_| !self.is_led)
+            if let Some(dynamics) = self.rates.dynamics.as_ref().filter(|_| !self.is_led)
                 && let Some(short) = ShortLeadIn::of(&command, &timing, dynamics)
             {
                 let line = (command.origin.source, command.origin.line);
@@ -308,5 +309,10 @@ pub(crate) fn assumption_text(assumption: &Assumption, speech: Speech) -> String
 
 /// What the times rest on, sentence by sentence.
 fn estimates(measure: &Measure, speech: Speech) -> impl Iterator<Item = (&'static str, String)> {
-    measure.schedule.estimates().iter().map(move |key| (*key, speech.fill(&format!("estimate-{key}"), &[])))
+    let always = measure
+        .schedule
+        .estimates()
+        .iter()
+        .map(move |key| (*key, speech.fill(&format!("estimate-{key}"), &[])));
+    panel_sentences(&measure.rates, speech).into_iter().chain(always)
 }

@@ -167,7 +167,7 @@ impl Core {
         };
         self.without_vector(|core| {
             core.rapid_each_axis_with(by_way_of, others_by_way_of)?;
-            core.rapid_each_axis_with(home, others_home)
+            core.rapid_along(RapidPath::Home, home, others_home)
         })?;
         self.leave_out_movement(present & CROSS != 0, present & ALONG != 0);
         if number == 0 {
@@ -221,9 +221,13 @@ impl Core {
         to: Position<WorkTip>,
         ends: OtherAxes,
     ) -> Result<(), Alarm> {
+        self.rapid_along(RapidPath::EachAxis, to, ends)
+    }
+
+    fn rapid_along(&mut self, path: RapidPath, to: Position<WorkTip>, ends: OtherAxes) -> Result<(), Alarm> {
         self.modal.position = to;
         let others = self.take_along(to, &Shape::Line, ends);
-        self.emit_move(to, Action::Rapid { to, path: RapidPath::EachAxis, others })
+        self.emit_move(to, Action::Rapid { to, path, others })
     }
 
     /// Moves in machine coordinates need the reference.

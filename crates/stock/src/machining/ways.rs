@@ -22,7 +22,7 @@ pub(super) fn rapid_ways(
 ) -> impl Iterator<Item = Segment> {
     let corner = match path {
         RapidPath::Straight => to,
-        RapidPath::EachAxis => {
+        RapidPath::EachAxis | RapidPath::Home => {
             let (dz, dx) = (to.z - from.z, to.x - from.x);
             let seconds = |way: f64, rate: f64| if rate > 0.0 { way.abs() / rate } else { 0.0 };
             let (x, z) = (seconds(dx, rates.x_mm_per_min), seconds(dz, rates.z_mm_per_min));
