@@ -72,11 +72,49 @@ impl Chain {
         starts.zip(&self.links).map(|(from, link)| (from, link.to, link.edge))
     }
 
+    /// Lowest and highest X between two Z.
+    pub(crate) fn range(&self, from: f64, to: f64) -> (f64, f64) {
+        self.walk().range(from, to)
+    }
+
+    /// A walk from its start.
+    pub(crate) fn walk(&self) -> Walk<'_> {
+        Walk { from: self.from, links: &self.links }
+    }
+
+    /// The same on the other side of the axis, written over another chain.
+    pub(crate) fn mirror_into(&self, other: &mut Self) {
+        other.restart(self.from);
+        other.links.extend(self.links.iter().map(|link| Link { to: link.to, edge: link.edge.mirrored() }));
+    }
+}
+
+/// The edges of a chain that are still to come.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Walk<'a> {
+    /// Where the first of them begins.
+    from: f64,
+    links: &'a [Link],
+}
+
+impl<'a> Walk<'a> {
+    /// Goes on to the first edge that does not end at a Z or before it, or else to the last, and gives it.
+    #[inline]
+    pub(crate) fn at(&mut self, z: f64) -> Option<&'a Link> {
+        while let [first, rest @ ..] = self.links
+            && !rest.is_empty()
+            && first.to <= z + WELD_MM
+        {
+            *self = Self { from: first.to, links: rest };
+        }
+        self.links.first()
+    }
+
     /// Whether no edge lies lower than this X between two Z.
     #[inline]
     pub(crate) fn clears(&self, level: f64, from: f64, to: f64) -> bool {
         let mut start = self.from;
-        for link in &self.links {
+        for link in self.links {
             let (a, b) = (greater(from, start), lesser(to, link.to));
             if a < b && !link.edge.clears(level, a, b) {
                 return false;
@@ -94,7 +132,7 @@ impl Chain {
     pub(crate) fn range(&self, from: f64, to: f64) -> (f64, f64) {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut start = self.from;
-        for link in &self.links {
+        for link in self.links {
             let (a, b) = (greater(from, start), lesser(to, link.to));
             if a < b {
                 let (l, h) = link.edge.range(a, b);
@@ -107,11 +145,5 @@ impl Chain {
             start = link.to;
         }
         (low, high)
-    }
-
-    /// The same on the other side of the axis, written over another chain.
-    pub(crate) fn mirror_into(&self, other: &mut Self) {
-        other.restart(self.from);
-        other.links.extend(self.links.iter().map(|link| Link { to: link.to, edge: link.edge.mirrored() }));
     }
 }

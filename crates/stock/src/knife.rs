@@ -7,7 +7,7 @@
 
 use crate::WELD_MM;
 use crate::band::Band;
-use crate::chain::Link;
+use crate::chain::{Side, Walk};
 use crate::curve::{Column, Curve, greater, lesser};
 use crate::removed::Tally;
 use crate::row::{Run, Slab};
@@ -15,7 +15,10 @@ use crate::sweep::Stencil;
 
 /// A stencil in use.
 pub(crate) struct Knife<'a> {
-    stencil: &'a Stencil,
+    pub(crate) stencil: &'a Stencil,
+    /// Its sides from the slab on that was looked at last.
+    pub(crate) lower: Walk<'a>,
+    pub(crate) upper: Walk<'a>,
     pub(crate) from: f64,
     pub(crate) to: f64,
     pub(crate) taken: Tally,
@@ -37,11 +40,24 @@ pub(crate) struct Reach {
     upper: bool,
 }
 
+impl Reach {
+    /// The only side that lies within the material.
+    #[inline]
+    pub(crate) const fn side(self) -> Option<Side> {
+        match (self.lower, self.upper) {
+            (true, false) => Some(Side::Lower),
+            (false, true) => Some(Side::Upper),
+            _ => None,
+        }
+    }
+}
+
 impl<'a> Knife<'a> {
     pub(crate) fn new(stencil: &'a Stencil, stops: &'a mut Stops) -> Self {
         let (from, to) = (stencil.lower.from, stencil.lower.to().min(stencil.upper.to()));
         stops.doubts.clear();
-        Self { stencil, from, to, taken: Tally::default(), stops }
+        let (lower, upper) = (stencil.lower.walk(), stencil.upper.walk());
+        Self { stencil, lower, upper, from, to, taken: Tally::default(), stops }
     }
 
     /// Between these Z, what is left is not seen to hang together; it may, further off.
@@ -49,28 +65,42 @@ impl<'a> Knife<'a> {
         self.stops.doubts.push(ends);
     }
 
-    /// How the stencil lies to the rectangle between two Z and two X; `None` when it misses it.
+    /// How the stencil lies to the rectangle between two Z and two X; `None` when it misses it. Rectangles come in
+    /// order along Z.
     #[inline]
-    pub(crate) fn reach(&self, from: f64, to: f64, low: f64, high: f64) -> Option<Reach> {
+    pub(crate) fn reach(&mut self, from: f64, to: f64, low: f64, high: f64) -> Option<Reach> {
         let (from, to) = (greater(from, self.from), lesser(to, self.to));
-        if to - from <= WELD_MM {
+        let &Stencil { lower_least, upper_least, .. } = self.stencil;
+        if to - from <= WELD_MM || lower_least >= high {
             return None;
         }
-        let Stencil { lower, upper, lower_least, upper_least } = self.stencil;
-        if lower.clears(high, from, to) {
+        self.lower.at(from);
+        if self.lower.clears(high, from, to) {
             return None;
         }
-        let has_lower = *lower_least > low || lower.range(from, to).1 > low;
-        if *upper_least >= high {
+        let has_lower = lower_least > low || self.lower.range(from, to).1 > low;
+        if upper_least >= high {
             return Some(Reach { lower: has_lower, upper: false });
         }
-        let upper = upper.range(from, to);
+        self.upper.at(from);
+        let upper = self.upper.range(from, to);
         (upper.1 > low).then_some(Reach { lower: has_lower, upper: upper.0 < high })
     }
 
     /// Writes what is left of a slab; false when that is all of it.
+    #[inline]
     pub(crate) fn carve(&mut self, slab: &Slab, bands: &[Band], reach: Reach, left: &mut Run) -> bool {
-        let Self { stencil, stops: Stops { crossings, .. }, taken, .. } = self;
+        if let ([band], Some(side)) = (bands, reach.side())
+            && self.is_clear(side, slab, band)
+        {
+            return self.shave(side, slab, band, left);
+        }
+        self.carve_all(slab, bands, reach, left)
+    }
+
+    /// See [`Knife::carve`]; any slab, any sides.
+    pub(crate) fn carve_all(&mut self, slab: &Slab, bands: &[Band], reach: Reach, left: &mut Run) -> bool {
+        let Self { stops: Stops { crossings, .. }, taken, .. } = self;
         let before = taken.count();
         let pass_by = |left: &mut Run, from, to| {
             bands.iter().for_each(|band| left.push_band(*band));
@@ -82,12 +112,12 @@ impl<'a> Knife<'a> {
             from = self.from;
         }
         let end = if slab.to - self.to > WELD_MM { self.to } else { slab.to };
-        let mut lower = reach.lower.then_some(stencil.lower.links.as_slice());
-        let mut upper = reach.upper.then_some(stencil.upper.links.as_slice());
+        let mut lower = reach.lower.then_some(self.lower);
+        let mut upper = reach.upper.then_some(self.upper);
         while from < end {
             let mut to = end;
-            let mut edge_from = |links: &mut Option<&'a [Link]>| {
-                let link = first_behind(links.as_mut()?, from)?;
+            let mut edge_from = |walk: &mut Option<Walk<'a>>| {
+                let link = walk.as_mut()?.at(from)?;
                 if end - link.to > WELD_MM {
                     to = lesser(to, link.to);
                 }
@@ -106,18 +136,6 @@ impl<'a> Knife<'a> {
         }
         taken.count() > before
     }
-}
-
-/// The first of some links that does not end at a Z or before it, or else the last; those before it are left behind.
-#[inline]
-fn first_behind<'a>(links: &mut &'a [Link], z: f64) -> Option<&'a Link> {
-    while let [first, rest @ ..] = links
-        && !rest.is_empty()
-        && first.to <= z + WELD_MM
-    {
-        *links = rest;
-    }
-    links.first()
 }
 
 /// Writes what is left where the edges of the stencil do not change; they cross others at the given places.

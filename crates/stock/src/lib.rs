@@ -31,6 +31,7 @@ mod pieces;
 mod removed;
 mod row;
 mod section;
+mod shave;
 mod slide;
 mod sweep;
 mod swing;

@@ -72,8 +72,18 @@ impl Bonds {
 }
 
 /// How much of the upright line at a Z two bands share.
+#[inline]
 fn bond(a: &Band, b: &Band, z: f64) -> f64 {
     lesser(a.roof.at(z), b.roof.at(z)) - greater(a.floor.at(z), b.floor.at(z))
+}
+
+/// Whether slabs of one band each hold to one another: so does what most cuts leave.
+pub(crate) fn is_strand(slabs: &[Slab], bands: &[Band]) -> bool {
+    bands.len() == slabs.len()
+        && slabs.windows(2).zip(bands.windows(2)).all(|(slabs, bands)| {
+            let z = slabs[0].to;
+            z == slabs[1].from && bond(&bands[0], &bands[1], z) > BOND_MM
+        })
 }
 
 /// Whether slabs hang together as far as they go; of slabs with many bands it is not found out.

@@ -8,9 +8,9 @@ use std::ops::Range;
 
 use crate::WELD_MM;
 use crate::band::Band;
-use crate::curve::{greater, lesser};
+use crate::curve::{Curve, greater, lesser};
 use crate::knife::Knife;
-use crate::pieces::hangs_together;
+use crate::pieces::{hangs_together, is_strand};
 use crate::removed::Removed;
 
 /// A chunk with more slabs is parted. Below a few dozen, moving slabs about costs no more than looking at them.
@@ -109,8 +109,27 @@ impl Run {
     pub(crate) fn end_slab(&mut self, from: f64, to: f64) {
         let bands = &self.bands[self.first_band(self.len())..];
         let (Some(lowest), Some(highest)) = (bands.first(), bands.last()) else { return };
-        let (low, high) = (lowest.floor.range(from, to).0, highest.roof.range(from, to).1);
+        let (low, high) = (lowest.floor.lowest(from, to), highest.roof.highest(from, to));
         self.push_slab(Slab { from, to, low, high, end: 0 });
+    }
+
+    /// Adds a slab of one band.
+    pub(crate) fn push_slab_of(&mut self, floor: &Curve, roof: &Curve, from: f64, to: f64) {
+        let (low, high) = (floor.lowest(from, to), roof.highest(from, to));
+        let first = if let [.., before, _] = self.slabs.as_slice() { before.end } else { 0 };
+        if let (Some(last), Some(before)) = (self.slabs.last_mut(), self.bands.last())
+            && last.to == from
+            && last.end == first + 1
+            && before.roof.is_one_with(roof, from, to)
+            && before.floor.is_one_with(floor, from, to)
+        {
+            last.to = to;
+            last.low = lesser(last.low, low);
+            last.high = greater(last.high, high);
+            return;
+        }
+        self.bands.push(Band { floor: *floor, roof: *roof });
+        self.slabs.push(Slab { from, to, low, high, end: self.bands.len() as u32 });
     }
 
     /// Adds a slab as it is.
@@ -183,9 +202,18 @@ fn put<T: Copy>(list: &mut Vec<T>, range: Range<usize>, items: &[T]) {
     {
         list.resize(length, filler);
     }
-    list.copy_within(range.end..range.end + tail, range.start + items.len());
+    if items.len() != range.len() {
+        list.copy_within(range.end..range.end + tail, range.start + items.len());
+    }
     list.truncate(length);
     list[range.start..range.start + items.len()].copy_from_slice(items);
+}
+
+/// Lowest and highest X of some slabs.
+fn range(slabs: &[Slab]) -> (f64, f64) {
+    slabs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), slab| {
+        (lesser(low, slab.low), greater(high, slab.high))
+    })
 }
 
 /// How many items, the first ones, come before a place; it is looked for where the last cut was, as the next one most
@@ -219,12 +247,14 @@ impl Chunk {
         let first = count_before(&run.slabs, self.recent, |slab| slab.to <= knife.from + WELD_MM);
         self.recent = first;
         let (mut written, mut is_changed) = (0..0, false);
-        for index in first..run.len() {
-            let (slab, bands) = run.slab(index);
+        let mut end = run.first_band(first);
+        for (index, slab) in run.slabs.iter().enumerate().skip(first) {
             if slab.from >= knife.to - WELD_MM {
                 break;
             }
+            let begin = std::mem::replace(&mut end, slab.end as usize);
             let Some(reach) = knife.reach(slab.from, slab.to, slab.low, slab.high) else { continue };
+            let bands = &run.bands[begin..end];
             if !is_changed {
                 left.clear();
                 written = index.saturating_sub(1)..index.saturating_sub(1);
@@ -245,21 +275,24 @@ impl Chunk {
             left.copy(slab, bands);
             written.end += 1;
         }
-        let was_outermost =
-            run.slabs[written.clone()].iter().any(|slab| slab.low <= self.low || slab.high >= self.high);
+        let (old, new) = (range(&run.slabs[written.clone()]), range(&left.slabs));
         self.run.replace(written, left);
-        if was_outermost || touched.start || touched.end {
-            self.measure();
+        if old.0 <= self.low && new.0 > self.low || old.1 >= self.high && new.1 < self.high {
+            (self.low, self.high) = range(&self.run.slabs);
         }
+        self.find_ends();
         Some(touched)
     }
 
     fn measure(&mut self) {
-        let slabs = &self.run.slabs;
-        let (Some(first), Some(last)) = (slabs.first(), slabs.last()) else { return };
-        (self.from, self.to) = (first.from, last.to);
-        self.low = slabs.iter().fold(f64::INFINITY, |low, slab| lesser(low, slab.low));
-        self.high = slabs.iter().fold(f64::NEG_INFINITY, |high, slab| greater(high, slab.high));
+        (self.low, self.high) = range(&self.run.slabs);
+        self.find_ends();
+    }
+
+    fn find_ends(&mut self) {
+        if let Some((from, to)) = self.run.ends() {
+            (self.from, self.to) = (from, to);
+        }
     }
 }
 
@@ -359,6 +392,9 @@ impl Row {
         };
         let before = runs(0..index).next_back().filter(|_| touched.start).map(|run| run.slab(run.len() - 1));
         let behind = runs(index + 1..self.chunks.len()).next().filter(|_| touched.end).map(|run| run.slab(0));
+        if before.is_none() && behind.is_none() && is_strand(&left.slabs, &left.bands) {
+            return;
+        }
         if !hangs_together(before.into_iter().chain(left.slabs()).chain(behind)) {
             let chunk = &self.chunks[index];
             let (from, to) = left.ends().unwrap_or((chunk.from, chunk.to));
