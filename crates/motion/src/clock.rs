@@ -206,6 +206,17 @@ impl Clock {
         self.is_led
     }
 
+    /// Nobody watches the speed of the spindle, and the panel is as usual.
+    pub(crate) const fn is_plain(&self) -> bool {
+        self.watch.is_none() && !self.is_manned
+    }
+
+    /// A cut that waited for nothing and changed nothing but the place is over.
+    #[inline]
+    pub(crate) fn arrive_plainly(&mut self, to: Position<WorkTip>) {
+        (self.shift, self.thread_rpm, self.position) = (None, None, to);
+    }
+
     /// Whether a cut from here would wait for the spindle.
     pub(crate) fn would_wait(&self) -> bool {
         let mut spindle = self.spindle;

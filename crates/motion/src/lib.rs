@@ -24,6 +24,7 @@ mod leg;
 mod orders;
 mod panel;
 mod path;
+mod plain;
 pub mod planner;
 mod player;
 mod rates;

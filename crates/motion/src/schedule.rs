@@ -11,15 +11,16 @@ use turnwright_canon::{Action, Command, PathMode};
 use turnwright_units::{Position, WorkTip};
 
 use crate::clock::{Clock, SpindleStray, Timing};
+use crate::feedrate::Order;
 use crate::leg::Leg;
 use crate::orders::leg_limit;
+use crate::plain::PlainCut;
 use crate::run::{CuttingRun, LEGS_MAX};
 use crate::{Dynamics, ESTIMATES, ESTIMATES_WITH_DYNAMICS, MachineRates, Panel};
 
-/// A command, known or in the run that is being planned.
+/// The time of a command, known or in the run that is being planned.
 #[derive(Debug)]
 struct Entry {
-    command: Command,
     timing: Timing,
     /// Legs that are not over yet.
     legs: u32,
@@ -38,15 +39,23 @@ pub struct Schedule {
 /// Commands that have come in and not gone out yet.
 #[derive(Debug, Default)]
 struct Entries {
+    commands: VecDeque<Command>,
+    /// For each of them.
     list: VecDeque<Entry>,
     /// So many of the first ones have a time that is known.
     known: usize,
 }
 
 impl Entries {
+    #[inline]
+    fn add(&mut self, command: Command, entry: Entry) {
+        self.commands.push_back(command);
+        self.list.push_back(entry);
+    }
+
     fn add_known(&mut self, command: Command, timing: Timing) {
         debug_assert_eq!(self.known, self.list.len());
-        self.list.push_back(Entry { command, timing, legs: 0, is_complete: true });
+        self.add(command, Entry { timing, legs: 0, is_complete: true });
         self.known += 1;
     }
 
@@ -112,6 +121,11 @@ impl Schedule {
             self.entries.add_known(command, timing);
             return;
         };
+        if planning.goes_on_plainly()
+            && let Some(cut) = self.clock.plain_cut(&command)
+        {
+            return planning.add_plain(command, &cut, &mut self.entries);
+        }
         let goes_on = match &command.action {
             // Overrides begin or cease to act.
             Action::PathMode(mode)
@@ -157,11 +171,25 @@ impl Schedule {
     /// The next command whose time is known, with it.
     pub fn next_known(&mut self) -> Option<(Command, Timing)> {
         self.entries.known = self.entries.known.checked_sub(1)?;
-        self.entries.list.pop_front().map(|entry| (entry.command, entry.timing))
+        Some((self.entries.commands.pop_front()?, self.entries.list.pop_front()?.timing))
     }
 }
 
 impl Planning {
+    /// Whether a straight cut of X and Z would go on with the run.
+    fn goes_on_plainly(&self) -> bool {
+        self.run.is_open() && self.mode != PathMode::ExactStop && !self.has_others
+    }
+
+    fn add_plain(&mut self, command: Command, cut: &PlainCut, entries: &mut Entries) {
+        while !self.run.has_room() {
+            self.run.plan();
+            self.take(entries);
+        }
+        entries.add(command, Entry { timing: cut.timing(), legs: 1, is_complete: true });
+        self.run.push(&cut.leg(), Order::Speed(cut.speed_mm_per_s), f64::INFINITY);
+    }
+
     fn add(&mut self, command: Command, clock: &mut Clock, entries: &mut Entries) {
         let (feedrate, is_held) = self.panel.cutting(self.mode);
         // What stands for ever has no time.
@@ -169,7 +197,7 @@ impl Planning {
         let Some(cut) = cut else {
             let timing = clock.advance(&command);
             if self.run.is_open() {
-                entries.list.push_back(Entry { command, timing, legs: 0, is_complete: true });
+                entries.add(command, Entry { timing, legs: 0, is_complete: true });
             } else {
                 entries.add_known(command, timing);
             }
@@ -193,7 +221,7 @@ impl Planning {
         }
         self.is_block_over = self.panel.single_block && !command.origin.runs_on;
         let waiting = Timing { seconds: timing.waited_s, ..timing };
-        entries.list.push_back(Entry { timing: waiting, command, legs: 0, is_complete: false });
+        entries.add(command, Entry { timing: waiting, legs: 0, is_complete: false });
         for leg in 0..self.legs.len() {
             while !self.run.has_room() {
                 self.run.plan();

@@ -201,6 +201,13 @@ impl Spindle {
         self.gear
     }
 
+    /// It has the one speed that it was ordered to have, and somebody has waited for it.
+    pub(crate) fn is_steady(&self) -> bool {
+        let Order::Constant(rpm) = self.order else { return false };
+        let wanted = self.direction * rpm;
+        self.since_order_s.is_none() && self.target_rpm == wanted && self.actual_rpm == wanted
+    }
+
     /// Nothing is asked for until the next order: the spindle is held at an angle.
     pub(crate) fn stop(&mut self) {
         self.order = Order::Constant(0.0);

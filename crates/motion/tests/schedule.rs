@@ -1,9 +1,10 @@
 //! The schedule: times with acceleration, worked out by hand, and laws that tie them to those without.
 
 use turnwright_canon::{
-    Action, Command, Dwell, Origin, PathMode, RapidPath, Shape, SpindleSpeed, SpindleState, Turn,
+    Action, Command, Dwell, Origin, PathMode, RapidPath, Shape, SpindleSpeed, SpindleState, SpindleWatch,
+    Turn,
 };
-use turnwright_motion::{Clock, Dynamics, Kind, MachineRates, Schedule, Timing};
+use turnwright_motion::{Clock, Dynamics, Kind, MachineRates, Schedule, SpeedWait, Timing};
 use turnwright_units::{
     Feed, FeedPerMinute, FeedPerRevolution, Length, Position, Radius, Rpm, Seconds, SurfaceSpeed, WorkTip,
 };
@@ -226,4 +227,63 @@ fn mass_costs_time_and_the_lighter_the_less() {
         assert!((light - nominal).abs() < 1e-3 * nominal, "{seed}: {light} {nominal}");
         assert!(usual > light && heavy > usual, "{seed}: {nominal} {light} {usual} {heavy}");
     }
+}
+
+/// A spindle that is watched, with everything permitted, changes no time; but its cuts go the long way.
+#[test]
+fn plain_cuts_take_what_any_cut_takes() {
+    let watch = SpindleWatch { delay_ms: 0, reached_permille: 0, allowed_permille: 0, band: Rpm(0) };
+    let mut state = 1u64;
+    let mut random = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (state >> 40) as f64 / (1u64 << 24) as f64
+    };
+    let mut plain = 0;
+    for round in 0..60 {
+        let speed_wait = [SpeedWait::Order, SpeedWait::Cut, SpeedWait::Thread][round % 3];
+        let ramp = if round % 2 == 0 { 0.0 } else { 800.0 };
+        let cutting_max = if round % 5 == 0 { 700.0 } else { 12_000.0 };
+        let rates = MachineRates {
+            speed_wait,
+            spindle_ramp_rpm_per_s: ramp,
+            cutting_max_mm_per_min: cutting_max,
+            ..rates()
+        };
+        let size = [0.05, 0.5, 20.0][round / 3 % 3];
+        let (mut x, mut z) = (30.0, 0.0);
+        let mut program = vec![Action::Message(String::new().into())];
+        while program.len() < 400 {
+            let kind = random();
+            (x, z) = (x + size * (random() - 0.5), z + size * (random() - 0.5));
+            let per_minute = Feed::PerMinute(FeedPerMinute(length(20.0 * 400f64.powf(random()))));
+            let per_turn = Feed::PerRevolution(FeedPerRevolution(length(0.05 + random())));
+            let feed = if kind < 0.5 { per_minute } else { per_turn };
+            program.push(match kind {
+                _ if kind < 0.90 => Action::Feed { to: at(x, z), shape: Shape::Line, feed, others: None },
+                _ if kind < 0.93 => Action::Spindle {
+                    state: if random() < 0.8 {
+                        SpindleState::Clockwise
+                    } else {
+                        SpindleState::CounterClockwise
+                    },
+                    speed: if random() < 0.8 {
+                        SpindleSpeed::Constant(Rpm((random() * 2000.0) as u32))
+                    } else {
+                        SpindleSpeed::Surface(SurfaceSpeed(length(150_000.0)))
+                    },
+                    rpm_max: None,
+                },
+                _ if kind < 0.95 => Action::Dwell(Dwell::Time(Seconds(random()))),
+                _ if kind < 0.97 => rapid(x, z, RapidPath::Straight),
+                _ if kind < 0.98 => Action::PathMode(PathMode::ExactStop),
+                _ => Action::PathMode(PathMode::Continuous),
+            });
+        }
+        let mut watched = program.clone();
+        watched[0] = Action::SpindleWatch(Some(watch));
+        let (ours, expected) = (timed(at(30.0, 0.0), rates, &program), timed(at(30.0, 0.0), rates, &watched));
+        assert_eq!(ours[1..], expected[1..], "round {round}");
+        plain += ours.iter().filter(|timing| timing.kind == Kind::Cutting && timing.seconds > 0.0).count();
+    }
+    assert!(plain > 10_000, "{plain}");
 }
