@@ -2,9 +2,10 @@
 //!
 //! In: the whole setup (given, or inferred in a run before this one) and the commands. Out: the finished section, its
 //! threads, and what was hit on the way, as diagnostics. A crash is an error where the setup names the stock (and the
-//! obstacle) and the tool; a warning where tool or obstacle were inferred, for the fault may lie in the guess. Where
-//! the stock itself was inferred nothing is told of crashes: a bar that is assumed too thick is hit by sound programs.
-//! A rapid that only drags along the wall that was just cut is a warning.
+//! obstacle) and the tool; a warning where tool or obstacle were inferred, for the fault may lie in the guess.
+//! A rapid that only drags along the wall that was just cut is a warning. Where the stock itself was inferred, rapids
+//! leave it as it is (a bar that is assumed too thick is met by sound programs), and those that pass through the finished
+//! part are told at the end.
 //! Of tools that were inferred only what cuts is looked at: nobody said which holder it is. Edges that cut where they should
 //! not (`edges.rs`) are looked at where stock and tool are given.
 //!
@@ -52,6 +53,13 @@ const FINDINGS_MAX: usize = 10;
 /// A rapid that overlaps the stock less than this drags along what the tool has just cut: it mars, it does not crash.
 const DRAG_MM: f64 = 0.5;
 
+/// So deep in the finished part a rapid is told although the stock is assumed, mm: no guess of an insert's shape
+/// explains it.
+pub const CERTAIN_MM: f64 = 1.0;
+
+/// Rapids through an assumed stock that are held against the finished part.
+const DOUBTS_MAX: usize = 200;
+
 /// What is cut below a figure that is finished is told from here on, mm: above all rounding of its corners.
 pub const FIGURE_GOUGE_MM: f64 = 0.01;
 
@@ -86,6 +94,20 @@ pub struct PartRun {
     watches: Vec<Watch>,
     /// What the part is held against, and the first of its watches.
     target: Option<(Target, usize)>,
+    rates: RapidRates,
+    doubts: Vec<Doubt>,
+    /// Nothing of the stock is confirmed before the first cut.
+    has_cut: bool,
+    is_behind_thread: bool,
+}
+
+/// A rapid that meets a stock that is only assumed.
+#[derive(Clone, Debug)]
+struct Doubt {
+    from: Position<WorkTip>,
+    command: Command,
+    number: u64,
+    tool: u32,
 }
 
 /// What came out.
@@ -168,6 +190,9 @@ impl PartRun {
             tools: given.tools.keys().filter_map(|name| name.parse().ok()).collect(),
             ..Notebook::default()
         };
+        if !notebook.has_stock {
+            machining = machining.sparing_at_rapid();
+        }
         let (mut tools, mut noses, mut edges) = (BTreeMap::new(), BTreeMap::new(), Edges::default());
         for (station, tool) in setup.tools()? {
             noses.insert(station, tool.nose_radius_mm);
@@ -206,6 +231,10 @@ impl PartRun {
             obstacles,
             watches: Vec::new(),
             target: None,
+            rates,
+            doubts: Vec::new(),
+            has_cut: false,
+            is_behind_thread: false,
         }))
     }
 
@@ -264,12 +293,22 @@ impl PartRun {
         if let Action::Tool { tool, .. } = command.action {
             self.notebook.tool = tool;
         }
-        let Self { machining, notebook, edges, history, commands, watches, .. } = self;
+        let may_doubt = self.has_cut && !self.is_behind_thread && self.doubts.len() < DOUBTS_MAX;
+        self.is_behind_thread = matches!(command.action, Action::Thread { .. });
+        let Self { machining, notebook, edges, history, commands, watches, doubts, .. } = self;
         for (watch, guard) in watches.iter().zip(machining.guards_mut()) {
             guard.watch(watch.counts(command));
         }
         let from = machining.at();
-        let removed = machining.advance(command, &mut |event| notebook.tell(&event, *commands));
+        let removed = machining.advance(command, &mut |event| {
+            if notebook.has_stock || event.kind != EventKind::RapidIntoStock {
+                notebook.tell(&event, *commands);
+            } else if may_doubt {
+                let tool = notebook.tool;
+                doubts.push(Doubt { from, command: command.clone(), number: *commands, tool });
+            }
+        });
+        self.has_cut |= removed.bounds.is_some();
         for (watch, guard) in watches.iter_mut().zip(machining.guards_mut()) {
             watch.note(guard, from, command, (*commands, notebook.tool));
         }
@@ -313,6 +352,26 @@ impl PartRun {
         self.notebook.findings.push(note.at(place_of(&command.origin)));
     }
 
+    /// Tells of rapids that pass through the finished part: that was there all the time, whatever the stock was.
+    fn settle_doubts(&mut self) {
+        for Doubt { from, command, number, tool } in std::mem::take(&mut self.doubts) {
+            let Some(shape) = self.tools.get(&tool) else { continue };
+            let mut again = Machining::new(self.machining.part().clone(), from, self.rates);
+            again.set_tool(tool, shape);
+            let call = Action::Tool { tool, offset: 0 };
+            again.advance(&Command::new(call, command.origin), &mut |_| {});
+            self.notebook.tool = tool;
+            let notebook = &mut self.notebook;
+            again.advance(&command, &mut |event| {
+                let is_deep =
+                    event.contact.is_some_and(|contact| contact.depth_mm >= CERTAIN_MM - ROUNDING_MM);
+                if event.kind == EventKind::RapidIntoStock && is_deep {
+                    notebook.tell(&event, number);
+                }
+            });
+        }
+    }
+
     /// Whether nothing more is cut, because there was too much of it.
     pub const fn is_full(&self) -> bool {
         self.is_full
@@ -323,6 +382,7 @@ impl PartRun {
         if let Some(history) = &mut self.history {
             history.finish(self.machining.section());
         }
+        self.settle_doubts();
         let faults = self.edges.finish(self.machining.section(), self.machining.part());
         faults.iter().for_each(|fault| self.notebook.tell_fault(fault));
         let plain = self.plain.as_deref().unwrap_or(&self.machining);
@@ -421,7 +481,7 @@ impl Notebook {
         let judged = |is_known: bool| if is_known { Severity::Error } else { Severity::Warning };
         let is_drag = event.contact.as_ref().is_some_and(|contact| contact.depth_mm < DRAG_MM);
         let (key, severity) = match event.kind {
-            EventKind::RapidIntoStock => ("rapid-into-stock", judged(has_tool && !is_drag)),
+            EventKind::RapidIntoStock => ("rapid-into-stock", judged(self.has_stock && has_tool && !is_drag)),
             EventKind::BodyIntoStock => ("holder-into-stock", judged(has_tool)),
             EventKind::IntoObstacle(Obstacle::Chuck) => {
                 ("tool-into-chuck", judged(self.has_chuck && has_tool))
@@ -435,8 +495,12 @@ impl Notebook {
             EventKind::CutOff => ("part-cut-off", Severity::Note),
             EventKind::NoShape { .. } => ("tool-without-shape", Severity::Note),
         };
-        let is_of_stock = !matches!(event.kind, EventKind::NotTurned | EventKind::NoShape { .. });
-        if is_of_stock && !self.has_stock {
+        // A rapid through an assumed stock comes here when it is certain.
+        let needs_stock = !matches!(
+            event.kind,
+            EventKind::RapidIntoStock | EventKind::NotTurned | EventKind::NoShape { .. }
+        );
+        if needs_stock && !self.has_stock {
             return;
         }
         let contact = event.contact.as_ref();

@@ -95,6 +95,28 @@ fn a_rapid_into_stock_is_an_error_when_stock_and_tool_are_given() {
 }
 
 #[test]
+fn a_rapid_through_the_finished_part_is_told_whatever_the_stock_was() {
+    let turning = "O1\nT0101\nG97 S500 M03\nG00 X60. Z2.\nX30.\nG01 Z-20. F0.2\nX50.\nG00 X60. Z2.\n";
+    let rapid_to = |end: &str| found(&format!("{turning}G00 Z-10.\n{end}\nX60.\nM30\n"), "");
+    let warning = ("rapid-into-stock", Severity::Warning, 10);
+    assert_eq!(rapid_to("X26."), [warning, (warning.0, warning.1, 11)]);
+    assert_eq!(rapid_to("X30."), []);
+    // Less than a millimetre may be the guessed insert's doing.
+    assert_eq!(rapid_to("X28.1"), []);
+    assert_eq!(rapid_to("X28."), [warning, (warning.0, warning.1, 11)]);
+    // Before the first cut nothing says how thick the bar is.
+    let first = turning.replace("G00 X60. Z2.\nX30.", "G00 X60. Z-10.\nX26.\nX60.\nZ2.\nX30.");
+    assert_eq!(found(&format!("{first}M30\n"), ""), []);
+    // What a later cut takes away may have been thinner; and no rapid takes any of it away.
+    let later = format!("{turning}G00 Z-10.\nX26.\nX60.\nZ2.\nX20.\nG01 Z-20. F0.2\nX50.\nG00 X60.\nM30\n");
+    assert_eq!(found(&later, ""), []);
+    let control = "fanuc-0i-tf";
+    let met = part(&format!("{turning}G00 Z-10.\nX26.\nX60.\nM30\n"), control, &Setup::default());
+    let sound = part(&format!("{turning}M30\n"), control, &Setup::default());
+    assert_eq!(met.section.volume_mm3(), sound.section.volume_mm3());
+}
+
+#[test]
 fn the_chuck_is_told() {
     // The jaws begin at Z-60.
     let text = "O1\nT0101\nG97 S500 M03\nG00 X46. Z2.\nG01 Z-65. F0.2\nX52.\nG00 X160.\nZ5.\nM30\n";

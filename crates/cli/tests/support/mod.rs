@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// A program that runs to its end with one warning: G28 to an assumed reference point is a note, X100 without
 /// a point is the warning.
 pub const WARNS: &str =
-    "O0001\nT0101\nG97 S500 M03\nG00 X50. Z2.\nG01 X100 F0.2\nG01 Z-10.\nG00 X60. Z5.\nM30\n";
+    "O0001\nT0101\nG97 S500 M03\nG00 X50. Z2.\nG01 X100 F0.2\nG01 Z-10.\nG00 Z5.\nX60.\nM30\n";
 
 /// A program without anything to say about.
 pub const CLEAN: &str = "O0001\nT0101\nG97 S500 M03\nG00 X50. Z2.\nG01 Z-10. F0.2\nG00 X60. Z5.\nM30\n";

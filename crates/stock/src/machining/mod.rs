@@ -94,6 +94,8 @@ pub struct Machining {
     thread_end: Option<Point>,
     threads: ThreadMarks,
     sweep: Sweep,
+    /// Whether rapids that meet the stock take it away.
+    cuts_at_rapid: bool,
 }
 
 impl Machining {
@@ -118,7 +120,14 @@ impl Machining {
             thread_end: None,
             threads: ThreadMarks::default(),
             sweep: Sweep::new(),
+            cuts_at_rapid: true,
         }
+    }
+
+    /// The same whose rapids leave the stock as it is, and only tell that they meet it.
+    #[must_use]
+    pub fn sparing_at_rapid(self) -> Self {
+        Self { cuts_at_rapid: false, ..self }
     }
 
     /// The shape of a tool by number; in the place of the one before.
@@ -276,7 +285,9 @@ impl Machining {
         if let Some(contact) = contact {
             let place = || first_touch(grooved.as_ref().unwrap_or(&self.section), &tool.cutting, way);
             teller.tell(EventKind::RapidIntoStock, Some(contact), place);
-            removed = take(&mut self.section, &mut self.guards, &self.sweep);
+            if self.cuts_at_rapid {
+                removed = take(&mut self.section, &mut self.guards, &self.sweep);
+            }
         }
         self.look_around(way, teller);
         self.let_fall(&removed, way.end, teller);
