@@ -284,6 +284,57 @@ test("in space the part is drawn, is cut open, and changes with the time", async
   assert.equal(await seen(), null);
 });
 
+// A thread before the part comes off (held, and in the piece that fell), and one that is the last thing.
+const THREADED = `O7002
+(CONTROL fanuc-0i-tf)
+(SETUP STOCK D40 L60)
+(SETUP TOOL 3 THREADING)
+(SETUP TOOL 2 CUT-OFF W3)
+T0303
+G97 S500 M3
+G0 X44. Z5.
+G92 X39. Z-15. F2.
+X38.
+X37.6
+G0 X100. Z50.
+M30
+`;
+test("in space the threads of the finished part wind, and before that the page says that they are rings", async () => {
+  const note = () => page.evaluate(() => { const one = document.getElementById("solid-note"); return one.hidden ? "" : one.textContent; });
+  await open(reportOf("threaded", THREADED));
+  await page.click("#solid-shown");
+  await settle();
+  const seen = () => page.evaluate(() => turnwright.solid);
+  assert.deepEqual([(await seen()).isWound, await note()], [true, ""]);
+  const isOpen = (await seen()).painted;
+  assert.ok(isOpen > 20000, `${isOpen}`);
+  await page.keyboard.press("c");
+  assert.notEqual((await seen()).painted, isOpen, "closed it looks another way");
+  await page.fill("#position", "0");
+  assert.equal((await seen()).isWound, false);
+  assert.match(await note(), /rings until the part is finished/);
+  await page.keyboard.press("l");
+  assert.match(await note(), /圆环/);
+  // Off it comes, and winds where it fell.
+  const off = THREADED.replace("M30", "T0202\nG0 X44. Z-30.\nG1 X-1. F0.1\nG0 X44.\nX100. Z50.\nM30");
+  await page.context().close();
+  await open(reportOf("threaded-off", off));
+  await page.click("#solid-shown");
+  await settle();
+  assert.equal((await seen()).isWound, true);
+  const move = await page.evaluate(() => turnwright.linesOfMoves().indexOf(15));
+  await page.evaluate((step) => turnwright.goTo(step), move);
+  assert.equal((await seen()).isWound, false);
+  await page.evaluate((step) => turnwright.goTo(step), move + 1);
+  assert.equal((await seen()).isWound, true);
+  // Without threads nothing is said of them.
+  await page.context().close();
+  await open(drawn);
+  await page.click("#solid-shown");
+  await settle();
+  assert.deepEqual([(await seen()).isWound, await note()], [false, ""]);
+});
+
 // Where the line of the plots is, as a share of the slider's time; the plots have a margin at both sides.
 const cursorShare = () => page.evaluate(() => {
   const [host, line] = ["#plots", ".plot-cursor"].map((one) => document.querySelector(one).getBoundingClientRect());

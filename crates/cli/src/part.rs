@@ -1,10 +1,12 @@
 //! The part of a program: a second run of it, on the stock that the first one showed.
 
 use turnwright_control::Setup;
-use turnwright_diagnostics::Diagnostic;
+use turnwright_diagnostics::{Diagnostic, Severity};
+use turnwright_export::mesh::Mesh;
 use turnwright_export::part::PartShape;
+use turnwright_export::wound::{Turns, Unwound, Wound, half_planes};
 use turnwright_stock::Section;
-use turnwright_stock::machining::RapidRates;
+use turnwright_stock::machining::{RapidRates, TooLong};
 use turnwright_verify::Inferred;
 use turnwright_verify::figures::{FigureSearch, Figures};
 use turnwright_verify::measuring::{self, Judged};
@@ -130,4 +132,39 @@ pub(crate) fn out_of_tolerance(judged: &[Judged]) -> impl Iterator<Item = Diagno
 pub(crate) fn drawn(part: Part) -> Option<(Part, PartShape)> {
     let shape = PartShape::new(&part.section, &part.plain, &part.threads)?;
     Some((part, shape))
+}
+
+/// A part as triangles.
+#[derive(Debug, Default)]
+pub(crate) struct Meshed {
+    /// Them; nothing when the part has more edges than a solid may have.
+    pub(crate) mesh: Option<Mesh>,
+    /// The part in half-planes all round, when its threads wind.
+    pub(crate) turns: Option<Turns>,
+    /// Why its threads do not wind.
+    pub(crate) finding: Option<Diagnostic>,
+}
+
+/// The triangles of a part, within `chord_mm` of it.
+pub(crate) fn meshed(part: &Part, shape: &PartShape, chord_mm: f64) -> Meshed {
+    let plain = || Mesh::new(shape, chord_mm);
+    let Some(all) = part.half_planes.as_deref().filter(|_| !part.threads.is_empty()) else {
+        return Meshed { mesh: plain(), ..Meshed::default() };
+    };
+    let wound = all
+        .sections(half_planes(shape, chord_mm), &part.section)
+        .map_err(|TooLong| Unwound::TooFine)
+        .and_then(Turns::new)
+        .and_then(|turns| Ok((Wound::new(shape, &turns, chord_mm)?, turns)));
+    match wound {
+        Ok((wound, turns)) => Meshed { mesh: Some(Mesh::Wound(wound)), turns: Some(turns), finding: None },
+        Err(reason) => {
+            let key = match reason {
+                Unwound::TooFine => "threads-too-long-to-wind",
+                Unwound::InPieces => "threads-in-pieces",
+            };
+            let finding = Diagnostic::new(Severity::Note, key);
+            Meshed { mesh: plain(), turns: None, finding: Some(finding) }
+        }
+    }
 }

@@ -175,6 +175,22 @@ const partModel = (part, path, geometry) => {
     for (let n = next(); n > 0; n--) { const from = next(), to = next(); windows.push({ from, to, slabs: readSlabs(next) }); }
     return { step, windows };
   });
+  // The finished part all round, threads and all: of each shell its profiles, places [z, x], and for each triangle to the
+  // next profile whether its base is in this one.
+  const readWound = ({ step, shells }) => ({
+    step,
+    shells: shells.map(({ closed, corners, joints }) => {
+      const c = column(corners), profiles = [];
+      while (c.more()) {
+        let z = 0, x = 0;
+        const places = Array.from({ length: c.next() }, () => [(z += c.next()) / 1000, (x += c.next()) / 1000]);
+        if (closed) places.push(places[0]);
+        profiles.push(places);
+      }
+      return { profiles, joints: joints.map((digits) => Array.from(digits).flatMap((one) => [8, 4, 2, 1].map((bit) => (parseInt(one, 16) & bit) > 0))) };
+    }),
+  });
+  const wound = part.wound ? readWound(part.wound) : null;
   const fallen = readAll(part.fallen, (next) => ({ step: next(), slabs: readSlabs(next) }));
   const tools = new Map(Object.entries(part.tools).map(([station, { cutting, body }]) => {
     const places = outlinePlaces(cutting, CHORD_MM);
@@ -273,7 +289,7 @@ const partModel = (part, path, geometry) => {
     const wanted = momentsUpTo(step);
     if (wanted < count || (wanted === count && step < done)) back(wanted);
     while (count < wanted) apply();
-    if (count === moments.length) return { slabs, version: `${version}` };
+    if (count === moments.length) return { slabs, version: `${version}`, isLast: true };
     if (step - done > most) return { slabs, version: `${version}`, isEarly: true };
     for (let move = done; move < step; version++) {
       const to = straightTo(move, step);
@@ -293,7 +309,7 @@ const partModel = (part, path, geometry) => {
   for (const [z, x] of outlinePlaces(part.outline, 0.1)) {
     bounds.z0 = Math.min(bounds.z0, z); bounds.z1 = Math.max(bounds.z1, z); bounds.x1 = Math.max(bounds.x1, x);
   }
-  return { stock, moments, sectionAt, fallenAt, tools, toolOf, bounds, obstacles: part.obstacles, outline: part.outline, sizes: part.sizes };
+  return { stock, wound, moments, sectionAt, fallenAt, tools, toolOf, bounds, obstacles: part.obstacles, outline: part.outline, sizes: part.sizes };
 };
 
 // Cross-section and greatest radius of a section, for tests and for what is told of it.

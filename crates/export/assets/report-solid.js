@@ -35,6 +35,57 @@ const solidOf = (slabs, tolerance) => {
   return { walls, cuts };
 };
 
+// Triangles of a part whose threads wind, half-plane by half-plane: places and normals, and where each half-plane begins.
+const woundSolid = ({ shells }) => {
+  const count = shells[0].profiles.length, places = [], normals = [], starts = [];
+  // Of each chord of a profile its normals at both ends: those of soft corners are the mean of both sides.
+  const normalsOf = (profile) => {
+    const flat = profile.slice(1).map(([z, x], n) => {
+      const dz = z - profile[n][0], dx = x - profile[n][1], length = Math.hypot(dz, dx) || 1;
+      return [dx / length, -dz / length];
+    });
+    const soft = (a, b) => {
+      if (!b || a[0] * b[0] + a[1] * b[1] < 0.85) return a;
+      const length = Math.hypot(a[0] + b[0], a[1] + b[1]);
+      return [(a[0] + b[0]) / length, (a[1] + b[1]) / length];
+    };
+    const closed = profile[0] === profile.at(-1);
+    return flat.map((one, n) => [soft(one, flat[n - 1] ?? (closed ? flat.at(-1) : undefined)), soft(one, flat[n + 1] ?? (closed ? flat[0] : undefined))]);
+  };
+  const all = shells.map(({ profiles }) => profiles.map(normalsOf));
+  const put = (side, [z, x], [nz, nx]) => {
+    const turn = 2 * Math.PI * side / count, c = Math.cos(turn), s = Math.sin(turn);
+    places.push(z, x * c, x * s);
+    normals.push(nz, nx * c, nx * s);
+  };
+  for (let side = 0; side < count; side++) {
+    starts.push(places.length / 3);
+    const next = (side + 1) % count;
+    shells.forEach(({ profiles, joints }, n) => {
+      const here = profiles[side], there = profiles[next], lean = all[n];
+      // At the tip that one of the two normals that is more like the base's.
+      const tip = (leans, at, base) => {
+        const before = leans[at - 1]?.[1], behind = leans[at]?.[0];
+        if (!before || !behind) return before ?? behind;
+        const like = (one) => one[0] * (base[0][0] + base[1][0]) + one[1] * (base[0][1] + base[1][1]);
+        return like(before) > like(behind) ? before : behind;
+      };
+      for (let i = 0, j = 0, k = 0; i < here.length - 1 || j < there.length - 1; k++) {
+        if (joints[side][k]) {
+          const base = lean[side][i];
+          put(side, here[i], base[0]); put(side, here[i + 1], base[1]); put(next, there[j], tip(lean[next], j, base));
+          i++;
+        } else {
+          const base = lean[next][j];
+          put(side, here[i], tip(lean[side], i, base)); put(next, there[j + 1], base[1]); put(next, there[j], base[0]);
+          j++;
+        }
+      }
+    });
+  }
+  return { count, places, normals, starts };
+};
+
 const solidView = (THREE, host, { model, typed, colours, onFault }) => {
   const TURN_PARTS = 96, QUARTER = Math.PI / 2;
   const size = Math.max(model.bounds.z1 - model.bounds.z0, 2 * model.bounds.x1, 1), tolerance = size / 8000;
@@ -89,6 +140,11 @@ const solidView = (THREE, host, { model, typed, colours, onFault }) => {
     void main() {
       float way = (vFlat.x + vFlat.y) / pitch, off = abs(fract(way) - .5) / fwidth(way);
       gl_FragColor = vec4(shade(colour, vNormal, vPlace, 0.) * mix(.8, 1., clamp(off - .2, 0., 1.)), 1.);
+    }`;
+  const FACE = `uniform float turn;
+    void main() {
+      vFlat = position.xy;
+      put(vec3(position.x, position.y * cos(turn), position.y * sin(turn)), vec3(0., sin(turn), cos(turn)));
     }`;
   const SOLID = "void main() { put(position, normal); }";
   const BARE = "varying vec3 vColour; void main() { gl_FragColor = vec4(vColour, 1.); }";
@@ -151,10 +207,46 @@ const solidView = (THREE, host, { model, typed, colours, onFault }) => {
         cuts.fill(solid.cuts);
         return solid.walls.length / 8;
       },
+      show(on) { meshes.forEach((mesh, n) => { mesh.visible = on && (n === 0 || isOpen); }); },
       open(on) { meshes.slice(1).forEach((mesh) => { mesh.visible = on; }); },
       recolour() { looks.forEach((look, n) => look.uniforms.colour.value.copy(rgb(colours[n === 0 ? wallColour : cutColour]))); },
     };
   };
+  // The finished part, threads and all; made when it is shown first.
+  const finished = (wallColour, cutColour) => {
+    const { count, places, normals, starts } = woundSolid(model.wound);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(places), 3));
+    geometry.setAttribute("normal", new THREE.BufferAttribute(new Float32Array(normals), 3));
+    const looks = [material(wallColour, SOLID, PLAIN)], meshes = [add(geometry, looks[0])];
+    const shapeAt = (side) => {
+      const shapes = model.wound.shells.map(({ profiles }) => {
+        const shape = new THREE.Shape();
+        profiles[side].forEach(([z, x], n) => (n === 0 ? shape.moveTo(z, x) : shape.lineTo(z, x)));
+        return { shape, area: profiles[side].reduce((sum, [z, x], n, all) => { const [nz, nx] = all[(n + 1) % all.length]; return sum + z * nx - nz * x; }, 0) };
+      });
+      const outer = shapes.filter(({ area }) => area > 0).map(({ shape }) => shape);
+      if (outer.length > 0) outer[0].holes = shapes.filter(({ area }) => area <= 0).map(({ shape }) => shape);
+      return new THREE.ShapeGeometry(outer);
+    };
+    for (const [side, turn] of [[0, 0], [count / 4, QUARTER]]) {
+      looks.push(material(cutColour, FACE, HATCHED, { turn: { value: turn }, pitch }));
+      meshes.push(add(shapeAt(side), looks.at(-1)));
+    }
+    const open = (on) => {
+      const first = on ? starts[count / 4] : 0;
+      geometry.setDrawRange(first, places.length / 3 - first);
+      meshes.slice(1).forEach((mesh) => { mesh.visible = on && meshes[0].visible; });
+    };
+    open(isOpen);
+    return {
+      open,
+      show(on) { meshes[0].visible = on; open(isOpen); },
+      get shown() { return meshes[0].visible; },
+      recolour() { looks.forEach((look, n) => look.uniforms.colour.value.copy(rgb(colours[n === 0 ? wallColour : cutColour]))); },
+    };
+  };
+  let wound = null;
   const part = body("steel", "cut"), fallen = body("fallen-steel", "fallen-steel");
   const plain = [];   // looks with the names of their colours
   const flat = (colour, vertex = SOLID, uniforms = {}) => {
@@ -232,8 +324,16 @@ const solidView = (THREE, host, { model, typed, colours, onFault }) => {
   // ---- what is shown -----------------------------------------------------------------------------------------
   let version = "", pieces = -1, wallCount = 0;
   const show = (now) => {
+    const { step } = model.wound ?? {}, isHeld = step === null;
+    const isWound = model.wound && (isHeld ? now.section.isLast === true : now.fallen.some((piece) => piece.step === step));
+    if (isWound) wound ??= finished(...(isHeld ? ["steel", "cut"] : ["fallen-steel", "fallen-steel"]));
+    wound?.show(isWound);
+    part.show(!(isWound && isHeld));
     if (now.section.version !== version) { version = now.section.version; wallCount = part.set(now.section.slabs); }
-    if (now.fallen.length !== pieces) { pieces = now.fallen.length; fallen.set(now.fallen.flatMap((piece) => piece.slabs)); }
+    if (now.fallen.length !== pieces) {
+      pieces = now.fallen.length;
+      fallen.set(now.fallen.filter((piece) => !isWound || piece.step !== step).flatMap((piece) => piece.slabs));
+    }
     toolGroup.clear();
     if (now.tool) {
       toolGroup.add(meshesOf(now.tool));
@@ -250,8 +350,9 @@ const solidView = (THREE, host, { model, typed, colours, onFault }) => {
     isOpen = on;
     start.value = on ? QUARTER : 0;
     sweep.value = on ? 3 * QUARTER : 4 * QUARTER;
-    part.open(on);
+    part.open(on && !(wound?.shown && model.wound.step === null));
     fallen.open(on);
+    wound?.open(on);
     cutFaces.forEach((mesh) => { mesh.visible = on; });
     render();
   };
@@ -281,6 +382,7 @@ const solidView = (THREE, host, { model, typed, colours, onFault }) => {
   const recolour = () => {
     part.recolour();
     fallen.recolour();
+    wound?.recolour();
     for (const [look, colour] of plain) look.uniforms.colour.value.copy(rgb(colours[colour]));
     if (pathLines) { scene.remove(pathLines); pathLines.geometry.dispose(); pathLines = null; }
     render();
@@ -290,6 +392,7 @@ const solidView = (THREE, host, { model, typed, colours, onFault }) => {
   open(true);
   fit();
   return { show, open, fit, zoom, recolour, get isOpen() { return isOpen; }, get walls() { return wallCount; },
+    get isWound() { return wound?.shown === true; },
     // For tests: how many pixels show something, drawn at once.
     painted() {
       renderer.render(scene, camera);

@@ -237,6 +237,10 @@
       section, fallen: model.fallenAt(step), tool, place: toolPosition(), pathShown,
       segments: step < steps ? path.first[step] : segments,
     });
+    const note = byId("solid-note"), hasThreads = model.sizes.rows.some(({ kind }) => kind.endsWith("thread"));
+    note.hidden = solid.isWound || !(model.wound || hasThreads);
+    note.dataset.text = model.wound ? "threads-later" : "threads-rings";
+    note.textContent = word(note.dataset.text);
   };
   // In a long program the moves since the last moment are cut when the hand rests.
   let cutting = 0;
@@ -877,7 +881,7 @@
       const r = picture.getBoundingClientRect();
       return { finding: at, x: r.left + picture.clientLeft + toPxX(z), y: r.top + picture.clientTop + toPxY(x) };
     }),
-    get solid() { return solidShown ? { walls: solid.walls, painted: solid.painted(), isOpen: solid.isOpen } : null; },
+    get solid() { return solidShown ? { walls: solid.walls, painted: solid.painted(), isOpen: solid.isOpen, isWound: solid.isWound } : null; },
     linesOfMoves: () => Array.from(path.line),
     goToTime, plots,
     lineOf: (i) => path.line[moveOf[i]],

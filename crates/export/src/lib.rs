@@ -15,5 +15,6 @@ pub mod path;
 pub mod solid;
 pub mod timeline;
 mod words;
+pub mod wound;
 
 pub use words::Language;

@@ -1,7 +1,8 @@
 //! The part as triangles, for the formats that know nothing rounder.
 //!
-//! In: the solids of a [`PartShape`] and a tolerance. Out: a [`Mesh`] of strips: chords of the profile with the surface's
-//! normals at their ends, and the directions in which each is turned round the axis.
+//! In: the solids of a [`PartShape`] and a tolerance. Out: a [`Mesh`]: of a part that is the same all round its strips,
+//! chords of the profile with the surface's normals at their ends, and the directions in which each is turned round the
+//! axis ([`Turned`]); of one whose threads wind the triangles of `wound.rs`.
 //!
 //! Invariants: the corners lie on the part, and nothing of the mesh farther from it than the tolerance it tells; strips
 //! that meet have the very same corners, so that the mesh is closed; none has more than [`TRIANGLES_MAX`] triangles: for
@@ -13,6 +14,7 @@ use turnwright_geometry::{Point, Segment, Vector};
 
 use crate::part::PartShape;
 use crate::solid::{Shell, bodies};
+use crate::wound::Wound;
 
 /// How far a mesh may lie off the part when nothing else is asked for: a hundredth of a millimetre.
 pub const CHORD_MM: f64 = 0.01;
@@ -29,7 +31,16 @@ const SIDES_MAX: usize = 1440;
 
 /// A closed surface of triangles.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mesh {
+pub enum Mesh {
+    /// The same all round; threads, if there are any, are plain surfaces.
+    Turned(Turned),
+    /// With threads that wind.
+    Wound(Wound),
+}
+
+/// A closed surface of triangles that is the same all round.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Turned {
     /// Its strips, one behind the other along each profile.
     pub strips: Vec<Strip>,
     /// Cosine and sine of the directions round the axis.
@@ -59,6 +70,29 @@ pub struct Corner {
 }
 
 impl Mesh {
+    /// The mesh of a part whose threads are plain surfaces; see [`Turned::new`].
+    pub fn new(shape: &PartShape, chord_mm: f64) -> Option<Self> {
+        Turned::new(shape, chord_mm).map(Self::Turned)
+    }
+
+    /// How many triangles it has.
+    pub fn triangle_count(&self) -> usize {
+        match self {
+            Self::Turned(turned) => turned.triangle_count(),
+            Self::Wound(wound) => wound.facets.len(),
+        }
+    }
+
+    /// How far it may lie off the part, mm.
+    pub fn chord_mm(&self) -> f64 {
+        match self {
+            Self::Turned(turned) => turned.chord_mm,
+            Self::Wound(wound) => wound.chord_mm,
+        }
+    }
+}
+
+impl Turned {
     /// The mesh of a part, no farther from it than `chord_mm` unless it had too many triangles; nothing when the part
     /// has no solid.
     pub fn new(shape: &PartShape, chord_mm: f64) -> Option<Self> {
@@ -68,12 +102,15 @@ impl Mesh {
         if shells.is_empty() {
             return None;
         }
+        let is_thread = |edge: &Segment| shape.thread_of(edge).is_some();
         (0..DOUBLINGS).find_map(|doublings| {
             let chord_mm = chord_mm * f64::from(1 << doublings);
             // One half of the tolerance for each of the two ways in which the surface bends.
             let sides = sides(shape.diameter_mm / 2.0, chord_mm / 2.0);
-            let strips: Vec<Strip> =
-                shells.iter().flat_map(|shell| strips(shell, shape, chord_mm / 2.0)).collect();
+            let strips: Vec<Strip> = shells
+                .iter()
+                .flat_map(|shell| chords_of(&shell.profile, chord_mm / 2.0, is_thread))
+                .collect();
             let directions = (0..sides).map(|side| {
                 let angle = TAU * side as f64 / sides as f64;
                 (angle.cos(), angle.sin())
@@ -114,7 +151,7 @@ pub enum End {
 }
 
 /// Corners of a circle, a multiple of four.
-fn sides(radius_mm: f64, chord_mm: f64) -> usize {
+pub(crate) fn sides(radius_mm: f64, chord_mm: f64) -> usize {
     let sides = (PI / half_angle(radius_mm, chord_mm)).ceil() as usize;
     sides.next_multiple_of(4).clamp(SIDES_MIN, SIDES_MAX)
 }
@@ -124,13 +161,18 @@ fn half_angle(radius_mm: f64, chord_mm: f64) -> f64 {
     (1.0 - (chord_mm / radius_mm).min(1.0)).acos()
 }
 
-fn strips(shell: &Shell, shape: &PartShape, chord_mm: f64) -> Vec<Strip> {
+/// A profile as chords, each end to end with the next; too short ones go to their neighbours.
+pub(crate) fn chords_of(
+    profile: &[Segment],
+    chord_mm: f64,
+    is_thread: impl Fn(&Segment) -> bool,
+) -> Vec<Strip> {
     let snapped = |place: Point| if place.x < MERGE_MM { Point { x: 0.0, ..place } } else { place };
-    let mut strips: Vec<Strip> = Vec::with_capacity(shell.profile.len());
-    let Some(first) = shell.profile.first().map(|edge| snapped(edge.start)) else { return strips };
+    let mut strips: Vec<Strip> = Vec::with_capacity(profile.len());
+    let Some(first) = profile.first().map(|edge| snapped(edge.start)) else { return strips };
     let mut from = first;
-    for edge in &shell.profile {
-        let is_thread = shape.thread_of(edge).is_some();
+    for edge in profile {
+        let is_thread = is_thread(edge);
         let chords = chords(edge, chord_mm);
         let mut start_part = 0.0;
         for chord in 1..=chords {
@@ -145,7 +187,7 @@ fn strips(shell: &Shell, shape: &PartShape, chord_mm: f64) -> Vec<Strip> {
         }
     }
     // What was too short at the end goes to the last chord.
-    let last = shell.profile.last().map_or(first, |edge| snapped(edge.end));
+    let last = profile.last().map_or(first, |edge| snapped(edge.end));
     if let Some(strip) = strips.last_mut() {
         strip.end.place = last;
     }

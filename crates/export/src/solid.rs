@@ -76,8 +76,8 @@ pub fn bodies(shape: &PartShape) -> Vec<Body> {
     if !has_solid(shape) {
         return Vec::new();
     }
-    let shells = shape.loops.iter().flat_map(|edges| profiles(edges)).map(Shell::new);
-    let (outers, voids): (Vec<Shell>, Vec<Shell>) = shells.partition(|shell| shell.volume_mm3 > 0.0);
+    let (outers, voids): (Vec<Shell>, Vec<Shell>) =
+        shells(&shape.loops).partition(|shell| shell.volume_mm3 > 0.0);
     let mut bodies: Vec<Body> = outers.into_iter().map(|outer| Body { outer, voids: Vec::new() }).collect();
     for void in voids {
         let Some(place) = void.profile.first().map(|edge| edge.at(0.5)) else { continue };
@@ -88,6 +88,11 @@ pub fn bodies(shape: &PartShape) -> Vec<Body> {
         }
     }
     bodies
+}
+
+/// The surfaces of loops.
+pub(crate) fn shells(loops: &[Vec<Segment>]) -> impl Iterator<Item = Shell> {
+    loops.iter().flat_map(|edges| profiles(edges)).map(Shell::new)
 }
 
 impl Body {

@@ -92,7 +92,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 fn meshes_are_closed_and_stay_within_their_tolerance() {
     for (seed, section, shape) in shapes().step_by(4) {
         let mesh = Mesh::new(&shape, CHORD_MM).expect("a mesh");
-        assert_eq!(mesh.chord_mm, CHORD_MM);
+        assert_eq!(mesh.chord_mm(), CHORD_MM);
         let triangles = read_stl(&write_stl(&mesh));
         assert_eq!(triangles.len(), mesh.triangle_count());
         let mut edges: HashMap<([u32; 3], [u32; 3]), i32> = HashMap::new();
@@ -155,7 +155,7 @@ fn a_finer_tolerance_comes_nearer_and_a_fine_part_gets_a_coarse_mesh() {
         PartShape::new(&section, &section, &[]).expect("a part")
     };
     let mesh = Mesh::new(&grooved(4_000), CHORD_MM).expect("a mesh");
-    assert!(mesh.chord_mm > CHORD_MM && mesh.triangle_count() <= TRIANGLES_MAX);
+    assert!(mesh.chord_mm() > CHORD_MM && mesh.triangle_count() <= TRIANGLES_MAX);
     let fine = grooved(EDGES_MAX as u32 / 4 + 10);
     assert!(!has_solid(&fine) && bodies(&fine).is_empty() && Mesh::new(&fine, CHORD_MM).is_none());
 }

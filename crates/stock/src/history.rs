@@ -292,7 +292,7 @@ fn run_between(section: &Section, from: f64, to: f64) -> Run {
 }
 
 /// Adds what lies between two Z.
-fn clip<'a>(
+pub(crate) fn clip<'a>(
     slabs: impl Iterator<Item = (&'a crate::row::Slab, &'a [Band])>,
     from: f64,
     to: f64,

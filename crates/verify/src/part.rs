@@ -19,7 +19,9 @@ use turnwright_canon::{Action, Command, Origin};
 use turnwright_control::{Setup, SetupFault};
 use turnwright_diagnostics::{Diagnostic, Place, Severity, SourceId};
 use turnwright_geometry::{Bounds, Outline, Point};
-use turnwright_stock::machining::{Event, EventKind, Obstacle, RapidRates, ThreadMark, ToolShape};
+use turnwright_stock::machining::{
+    Event, EventKind, HalfPlanes, Obstacle, RapidRates, ThreadMark, ToolShape,
+};
 use turnwright_stock::{History, Machining, Removed, Section};
 use turnwright_units::{Position, WorkTip};
 
@@ -78,6 +80,10 @@ pub struct PartRun {
     machining: Machining,
     /// The same without its threads, from the first of them on.
     plain: Option<Box<Machining>>,
+    /// The same in any half-plane, from the first thread on.
+    half_planes: Option<Box<HalfPlanes>>,
+    /// The command with which the finished part came off.
+    parted: Option<u64>,
     stock: Outline,
     limits: PartLimits,
     moves: u64,
@@ -121,6 +127,10 @@ pub struct Part {
     pub stock: Outline,
     /// Its threads.
     pub threads: Vec<ThreadMark>,
+    /// Its section in any half-plane, when there are threads.
+    pub half_planes: Option<Box<HalfPlanes>>,
+    /// The number of the command with which it came off, when it did.
+    pub parted: Option<u64>,
     /// What was hit, and what is not shown.
     pub findings: Vec<Diagnostic>,
     /// Where and when, for each of the findings that have a place.
@@ -218,6 +228,8 @@ impl PartRun {
         Ok(Some(Self {
             machining,
             plain: None,
+            half_planes: None,
+            parted: None,
             stock,
             limits: PartLimits::default(),
             moves: 0,
@@ -288,6 +300,10 @@ impl PartRun {
         }
         if matches!(command.action, Action::Thread { .. }) && self.plain.is_none() {
             self.plain = Some(Box::new(self.machining.only_cutting()));
+            self.half_planes = Some(Box::new(HalfPlanes::new(&self.machining)));
+        }
+        if let Some(half_planes) = &mut self.half_planes {
+            half_planes.add(command, &self.machining);
         }
         self.moves += u64::from(is_move);
         if let Action::Tool { tool, .. } = command.action {
@@ -300,6 +316,7 @@ impl PartRun {
             guard.watch(watch.counts(command));
         }
         let from = machining.at();
+        let parted = machining.parted();
         let removed = machining.advance(command, &mut |event| {
             if notebook.has_stock || event.kind != EventKind::RapidIntoStock {
                 notebook.tell(&event, *commands);
@@ -309,6 +326,12 @@ impl PartRun {
             }
         });
         self.has_cut |= removed.bounds.is_some();
+        if machining.parted() != parted {
+            self.parted = Some(*commands);
+            if let Some(half_planes) = &mut self.half_planes {
+                half_planes.end();
+            }
+        }
         for (watch, guard) in watches.iter_mut().zip(machining.guards_mut()) {
             watch.note(guard, from, command, (*commands, notebook.tool));
         }
@@ -407,6 +430,8 @@ impl PartRun {
             aimed,
             stock: self.stock,
             threads: self.machining.threads().to_vec(),
+            parted: self.parted,
+            half_planes: self.half_planes.and_then(|one| one.finish(&self.machining)).map(Box::new),
             findings: self.notebook.findings,
             marks: self.notebook.marks,
             history: self.history,

@@ -12,7 +12,7 @@ use crate::environment::ProgramText;
 use crate::execution::Execution;
 use crate::fault::{Fault, Status};
 use crate::output::{PartFile, WholeFile};
-use crate::part;
+use crate::part::{self, Meshed};
 use crate::render::Printer;
 use crate::report::{Measure, picture_language};
 use crate::session::Session;
@@ -36,6 +36,13 @@ pub(crate) fn run(options: &PartOptions, printer: &Printer) -> Result<Status, Fa
     }
     let drawn = part.and_then(part::drawn);
     let target = &options.output;
+    let meshed = match (&drawn, PartFile::of(target)) {
+        (Some((part, shape)), Some(form)) if form.is_mesh() => part::meshed(part, shape, options.chord),
+        _ => Meshed::default(),
+    };
+    if let Some(finding) = meshed.finding {
+        execution.warn(finding);
+    }
     let file = drawn.as_ref().and_then(|(part, shape)| {
         let drawing = PartDrawing {
             shape,
@@ -46,7 +53,7 @@ pub(crate) fn run(options: &PartOptions, printer: &Printer) -> Result<Status, Fa
                 .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
             language: picture_language(speech.language),
         };
-        PartFile::of(target)?.bytes(&drawing, options.chord)
+        PartFile::of(target)?.bytes(&drawing, meshed.mesh.as_ref())
     });
     match file {
         Some(picture) if PartFile::of(target) == Some(PartFile::Png) => {

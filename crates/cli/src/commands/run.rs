@@ -29,7 +29,7 @@ use crate::execution::Execution;
 use crate::fault::{Fault, Status, unwritable};
 use crate::finding::Finding;
 use crate::output::{PartFile, WholeFile, sarif};
-use crate::part;
+use crate::part::{self, Meshed};
 use crate::passes::Passes;
 use crate::progress::Progress;
 use crate::rates::rates;
@@ -100,6 +100,13 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     if options.out.is_some() && part.as_ref().is_some_and(|(_, shape)| !has_solid(shape)) {
         execution.warn(Diagnostic::new(Severity::Note, "part-too-fine"));
     }
+    let meshed = match &part {
+        Some((part, shape)) if options.out.is_some() => part::meshed(part, shape, CHORD_MM),
+        _ => Meshed::default(),
+    };
+    if let Some(finding) = &meshed.finding {
+        execution.warn(finding.clone());
+    }
     let findings = execution.findings();
     let status = findings.iter().map(Finding::status).max().unwrap_or(Status::Clean);
     let blocks = execution.interpreter().blocks_run();
@@ -116,6 +123,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         decimals,
         assumptions: checked.inferred.assumptions,
         part,
+        meshed,
         cutting,
         judged,
         blocks,
@@ -235,9 +243,10 @@ impl OutFolder {
                 title: report.title(),
                 language: picture_language(language),
             };
+            let mesh = report.meshed.mesh.as_ref();
             for name in PART_FILES {
                 let target = folder.join(name);
-                if let Some(bytes) = PartFile::of(&target).and_then(|form| form.bytes(&drawing, CHORD_MM)) {
+                if let Some(bytes) = PartFile::of(&target).and_then(|form| form.bytes(&drawing, mesh)) {
                     WholeFile::write(&target, &bytes, printer.speech)?;
                     names.push(name);
                 }

@@ -27,7 +27,7 @@ use crate::execution::Execution;
 use crate::fault::{Fault, Status, caught};
 use crate::finding::Finding;
 use crate::output::WholeFile;
-use crate::part;
+use crate::part::{self, Meshed};
 use crate::passes::Passes;
 use crate::progress::Progress;
 use crate::rates::rates;
@@ -131,6 +131,7 @@ fn one(path: &Path, options: &Time, printer: &Printer) -> Result<Status, Fault> 
         cutting: CuttingData::default(),
         judged: Vec::new(),
         part: None,
+        meshed: Meshed::default(),
         blocks: execution.interpreter().blocks_run(),
         stopped_at,
         written: options.output.iter().map(|path| path.display().to_string()).collect(),

@@ -44,14 +44,19 @@ impl PartFile {
         Self::ENDS.iter().find(|(known, _)| end.eq_ignore_ascii_case(known)).map(|(_, form)| *form)
     }
 
-    /// The file; nothing when the part has more edges than a solid may have. Triangles lie within `chord_mm`.
-    pub(crate) fn bytes(self, drawing: &PartDrawing<'_>, chord_mm: f64) -> Option<Vec<u8>> {
+    /// Whether it is made of triangles.
+    pub(crate) const fn is_mesh(self) -> bool {
+        matches!(self, Self::Stl | Self::Glb)
+    }
+
+    /// The file; nothing when the part has more edges than a solid may have.
+    pub(crate) fn bytes(self, drawing: &PartDrawing<'_>, mesh: Option<&Mesh>) -> Option<Vec<u8>> {
         let shape = drawing.shape;
         match self {
             Self::Svg | Self::Png => Some(write_part_svg(drawing).into_bytes()),
             Self::Step => write_step(shape, &drawing.title).map(String::into_bytes),
-            Self::Stl => Mesh::new(shape, chord_mm).map(|mesh| write_stl(&mesh)),
-            Self::Glb => Mesh::new(shape, chord_mm).map(|mesh| write_glb(&mesh, &drawing.title)),
+            Self::Stl => mesh.map(write_stl),
+            Self::Glb => mesh.map(|mesh| write_glb(mesh, &drawing.title)),
             Self::Dxf => Some(write_part_dxf(shape, drawing.stock).into_bytes()),
         }
     }

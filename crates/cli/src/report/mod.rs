@@ -31,6 +31,7 @@ use turnwright_verify::part::Part;
 pub(crate) use self::times::totals_json;
 use crate::finding::Finding;
 use crate::operator::panel_sentences;
+use crate::part::Meshed;
 use crate::session::Session;
 use crate::speech::Speech;
 
@@ -202,6 +203,8 @@ pub(crate) struct RunReport {
     pub(crate) assumptions: Vec<Assumption>,
     /// The part, and how it is drawn; nothing when there is no stock.
     pub(crate) part: Option<(Part, PartShape)>,
+    /// It as triangles, when files are written.
+    pub(crate) meshed: Meshed,
     /// What is asked of tools and spindle.
     pub(crate) cutting: CuttingData,
     /// The sizes that the setup file asks for, measured.

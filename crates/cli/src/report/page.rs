@@ -9,6 +9,7 @@ use turnwright_export::formats::html::{
 };
 use turnwright_export::passes::Cycle;
 use turnwright_export::path::PathRecorder;
+use turnwright_export::wound::{PAGE_CHORD_MM, Wound};
 use turnwright_verify::Assumption;
 use turnwright_verify::part::{Mark, Part};
 
@@ -159,8 +160,18 @@ impl RunReport {
 
     fn page_part(&self, has_solid: bool) -> Option<ReportPart<'_>> {
         let (part, shape) = self.part.as_ref()?;
-        let Part { history, stock, tools, obstacles, .. } = part;
-        Some(ReportPart { history: history.as_ref()?, shape, stock, tools, obstacles, has_solid })
+        let Part { history, stock, tools, obstacles, parted, .. } = part;
+        let turns = self.meshed.turns.as_ref().filter(|_| has_solid);
+        Some(ReportPart {
+            history: history.as_ref()?,
+            shape,
+            stock,
+            tools,
+            obstacles,
+            has_solid,
+            wound: turns.and_then(|turns| Wound::new(shape, turns, PAGE_CHORD_MM).ok()),
+            parted: *parted,
+        })
     }
 
     fn page_cutting(&self) -> Option<[CuttingPicture; 2]> {

@@ -2,12 +2,13 @@
 //!
 //! In: a [`Mesh`]. Out: the bytes. glTF measures in metres with Y up: the spindle axis is X, so that the part lies in a
 //! viewer as in the section, chuck to the left. Surfaces that go on smoothly share their corners and look round, edges
-//! stay sharp. Threads are plain surfaces in a material of their own.
+//! stay sharp. Threads have a material of their own.
 
 use serde_json::{Value, json};
 use turnwright_geometry::Vector;
 
-use crate::mesh::{Corner, End, Mesh};
+use crate::mesh::{Corner, End, Mesh, Turned};
+use crate::wound::Wound;
 
 const MAGIC: &[u8; 4] = b"glTF";
 const VERSION: u32 = 2;
@@ -34,7 +35,10 @@ pub fn write_glb(mesh: &Mesh, name: &str) -> Vec<u8> {
     let (mut binary, mut views, mut accessors, mut primitives) =
         (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (material, is_thread) in [false, true].into_iter().enumerate() {
-        let primitive = Primitive::new(mesh, is_thread);
+        let primitive = match mesh {
+            Mesh::Turned(turned) => Primitive::turned(turned, is_thread),
+            Mesh::Wound(wound) => Primitive::wound(wound, is_thread),
+        };
         if primitive.triangles.is_empty() {
             continue;
         }
@@ -67,7 +71,7 @@ pub fn write_glb(mesh: &Mesh, name: &str) -> Vec<u8> {
             .take(primitives.len())
             .collect();
     let document = json!({
-        "asset": { "version": "2.0", "generator": "turnwright", "extras": { "chord_mm": mesh.chord_mm } },
+        "asset": { "version": "2.0", "generator": "turnwright", "extras": { "chord_mm": mesh.chord_mm() } },
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
         "nodes": [{ "mesh": 0, "name": name }],
@@ -93,7 +97,7 @@ fn material(name: &str, [red, green, blue]: [f64; 3]) -> Value {
 }
 
 impl Primitive {
-    fn new(mesh: &Mesh, is_thread: bool) -> Self {
+    fn turned(mesh: &Turned, is_thread: bool) -> Self {
         let mut primitive = Self::default();
         let mut row_before: Option<(Corner, u32)> = None;
         for strip in mesh.strips.iter().filter(|strip| strip.is_thread == is_thread) {
@@ -120,8 +124,35 @@ impl Primitive {
         primitive.without_lone_vertices()
     }
 
+    /// Triangles whose corners share a vertex where they look alike.
+    fn wound(mesh: &Wound, is_thread: bool) -> Self {
+        let mut primitive = Self::default();
+        // Of each corner the normals that it has so far, with their vertices.
+        let mut known: Vec<Vec<(Vector, u32)>> = vec![Vec::new(); mesh.corners.len()];
+        for facet in mesh.facets.iter().filter(|facet| facet.is_thread == is_thread) {
+            for (corner, normal) in facet.corners.into_iter().zip(facet.normals) {
+                let is_alike = |one: &&(Vector, u32)| one.0.x * normal.x + one.0.z * normal.z > SMOOTH_COSINE;
+                let vertex = match known[corner].iter().find(is_alike) {
+                    Some((_, vertex)) => *vertex,
+                    None => {
+                        let (cosine, sine) = mesh.directions[mesh.corners[corner].side];
+                        let [x, y, z] = mesh.place(corner);
+                        primitive.places.push(metres(z, x, y));
+                        let Vector { x, z } = normal;
+                        primitive.normals.push([z as f32, (x * cosine) as f32, (x * sine) as f32]);
+                        let vertex = primitive.places.len() as u32 - 1;
+                        known[corner].push((normal, vertex));
+                        vertex
+                    }
+                };
+                primitive.triangles.push(vertex);
+            }
+        }
+        primitive
+    }
+
     /// A corner in all directions; on the axis each looks half-way to the next.
-    fn row(&mut self, mesh: &Mesh, corner: &Corner) -> u32 {
+    fn row(&mut self, mesh: &Turned, corner: &Corner) -> u32 {
         let first = self.places.len() as u32;
         let count = mesh.directions.len();
         for (side, direction) in mesh.directions.iter().enumerate() {

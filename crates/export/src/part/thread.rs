@@ -210,6 +210,22 @@ impl Thread {
             && out < self.out.1 + self.lead_mm
     }
 
+    /// Whether a place of the true section belongs to this thread: between its ends, not deeper than its roots.
+    pub fn surrounds(&self, place: Point) -> bool {
+        let (along, out) = (self.side.along(place), self.side.out(place));
+        let is_between = self.along.0 < along && along < self.along.1;
+        is_between && self.out.0 - SLACK_MM <= out && out < self.out.1 + self.lead_mm
+    }
+
+    /// How far it may wind on from one of so many half-planes to the next, by its hand.
+    pub(crate) fn steps(&self, half_planes: usize) -> [Vector; 2] {
+        let step = self.lead_mm / half_planes.max(1) as f64;
+        [step, -step].map(|step| match self.side {
+            Side::Outside | Side::Inside => Vector { x: 0.0, z: step },
+            Side::Front | Side::Back => Vector { x: step, z: 0.0 },
+        })
+    }
+
     /// Parts the edges where the thread ends, so that its surface is one of its own.
     pub(super) fn part(&self, edges: &mut Vec<Segment>) {
         for end in [self.along.0, self.along.1] {

@@ -19,6 +19,7 @@
 
 mod event;
 mod guard;
+mod half_planes;
 mod threads;
 mod ways;
 
@@ -30,6 +31,7 @@ use turnwright_units::{Position, WorkTip};
 
 pub use self::event::{Event, EventKind, Obstacle};
 pub use self::guard::{Guard, LOSSES_MAX};
+pub use self::half_planes::{HalfPlanes, TooLong, WOUND_COMMANDS_MAX, WOUND_CUTS_MAX};
 use self::threads::{Phase, ThreadCut, ThreadMarks};
 pub use self::threads::{THREADS_MAX, TURNS_MAX, ThreadHand, ThreadMark};
 pub use self::ways::edges;
@@ -74,6 +76,8 @@ pub struct Machining {
     section: Section,
     /// What came off in front of all that is held.
     cut_off: Option<Section>,
+    /// How often that changed.
+    parted: u32,
     /// What came off last, until it is taken.
     fallen: Option<Section>,
     /// Z of the end that the chuck holds.
@@ -89,6 +93,8 @@ pub struct Machining {
     /// The tool without a shape that was told of last.
     unknown: Option<u32>,
     spindle: SpindleState,
+    /// Which half-plane the section is in: turns from X towards Y.
+    turn: f64,
     phase: Phase,
     /// Where a thread has just ended, until the next move.
     thread_end: Option<Point>,
@@ -105,6 +111,7 @@ impl Machining {
             held_z: section.bounds().map_or(0.0, |bounds| bounds.min.z),
             section,
             cut_off: None,
+            parted: 0,
             fallen: None,
             tools: BTreeMap::new(),
             obstacles: Vec::new(),
@@ -116,6 +123,7 @@ impl Machining {
             tool: None,
             unknown: None,
             spindle: SpindleState::Stop,
+            turn: 0.0,
             phase: Phase::default(),
             thread_end: None,
             threads: ThreadMarks::default(),
@@ -180,6 +188,11 @@ impl Machining {
         self.cut_off.as_ref().unwrap_or(&self.section)
     }
 
+    /// How often a greater piece came off in front of all that is held.
+    pub const fn parted(&self) -> u32 {
+        self.parted
+    }
+
     /// What came off since the last time this was asked, at the place where it was; a pip is not told.
     pub const fn take_fallen(&mut self) -> Option<Section> {
         self.fallen.take()
@@ -237,7 +250,12 @@ impl Machining {
 
     /// Follows a command without cutting or telling anything.
     pub fn pass_over(&mut self, command: &Command) {
-        self.at = self.place.end_of(&command.action).unwrap_or(self.at);
+        if let Some(end) = self.place.end_of(&command.action) {
+            (self.at, self.thread_end) = (end, None);
+        }
+        if let Action::Relocate { to, .. } = command.action {
+            self.at = to;
+        }
         self.remember(&command.action);
     }
 
@@ -334,7 +352,9 @@ impl Machining {
             return Removed::default();
         };
         if !is_chained {
-            self.phase = Phase::starting_at(*start_angle);
+            // The half-plane comes round to the tool sooner by its angle, or later.
+            let turn = if self.spindle == SpindleState::CounterClockwise { -self.turn } else { self.turn };
+            self.phase = Phase::starting_at(*start_angle).further(turn);
         }
         let lead_mm = (lead.0.to_mm(), lead_end.as_deref().unwrap_or(lead).0.to_mm());
         let mut removed = Removed::default();
@@ -412,6 +432,7 @@ impl Machining {
         let most_mm3 = self.cut_off.as_ref().map_or(least_mm3, Section::volume_mm3);
         if is_in_front && fallen.volume_mm3() > most_mm3 {
             self.cut_off = Some(fallen.clone());
+            self.parted += 1;
         }
         if fallen.volume_mm3() > least_mm3 {
             self.fallen = Some(fallen);

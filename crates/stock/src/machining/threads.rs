@@ -69,6 +69,11 @@ impl Phase {
         Self((angle.to_degrees() / 360.0).rem_euclid(1.0))
     }
 
+    /// The same so many turns further on.
+    pub(super) fn further(self, turns: f64) -> Self {
+        Self((self.0 + turns).rem_euclid(1.0))
+    }
+
     /// Where the tool is on a way whenever the spindle passes zero; `None` when that is too often. The lead is that
     /// along the longer axis, and changes evenly with the turns from the first to the second.
     pub(super) fn turns(

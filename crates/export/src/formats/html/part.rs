@@ -15,6 +15,7 @@ use super::path::Column;
 use crate::formats::part_svg::{PartDrawing, thread_text, write_part_svg};
 use crate::part::PartShape;
 use crate::path::Move;
+use crate::wound::Wound;
 
 /// What the report shows of the part.
 #[derive(Clone, Debug)]
@@ -31,6 +32,10 @@ pub struct ReportPart<'a> {
     pub obstacles: &'a [(Obstacle, Outline)],
     /// Whether it can be seen in space too, which takes 0.6 MB.
     pub has_solid: bool,
+    /// The finished part with its threads as they wind.
+    pub wound: Option<Wound>,
+    /// The number of the command with which it came off, when it did.
+    pub parted: Option<u64>,
 }
 
 /// Where in the section a diagnostic is.
@@ -88,6 +93,10 @@ impl ReportPart<'_> {
         for (name, column) in [("stock", stock), ("changes", changes), ("fallen", fallen)] {
             column.write(name, &mut json);
         }
+        if let Some(wound) = &self.wound {
+            let step = self.parted.map(|command| moves_done(moves, command));
+            json.push_str(&format!(",\n\"wound\":{}", wound_json(wound, step)));
+        }
         json.push('}');
         json
     }
@@ -142,6 +151,35 @@ fn push_slices<'a>(column: &mut Column, slices: impl ExactSizeIterator<Item = Sl
             }
         }
     }
+}
+
+/// After which move the part comes off, if it does; of each shell whether its profiles are closed, of each profile how
+/// many corners it has and their Z and X, in micrometres from the one before, and how it is joined to the next: a bit for
+/// each triangle, 1 where its base is in this one, four to a digit, the first the highest.
+fn wound_json(wound: &Wound, step: Option<usize>) -> Value {
+    let shells = wound.rings.iter().map(|profiles| {
+        let mut corners = Vec::new();
+        let mut joints = Vec::with_capacity(profiles.len());
+        let mut is_ring = false;
+        for profile in profiles {
+            is_ring = profile.is_ring;
+            corners.push(profile.count as i64);
+            let mut before = (0, 0);
+            for corner in &wound.corners[profile.first..profile.first + profile.count] {
+                let Point { x, z } = corner.place;
+                let here = ((z * 1e3).round() as i64, (x * 1e3).round() as i64);
+                corners.extend([here.0 - before.0, here.1 - before.1]);
+                before = here;
+            }
+            let digit = |four: &[bool]| {
+                let bits = (0..4).map(|at| u32::from(four.get(at).copied().unwrap_or(false)) << (3 - at));
+                char::from_digit(bits.sum(), 16).unwrap_or('0')
+            };
+            joints.push(profile.is_base_here.chunks(4).map(digit).collect::<String>());
+        }
+        json!({ "closed": is_ring, "corners": corners, "joints": joints })
+    });
+    json!({ "step": step, "shells": shells.collect::<Vec<_>>() })
 }
 
 /// Each segment as its start, Z and X, and, where it is an arc, its centre and the angle that it turns.
@@ -206,6 +244,8 @@ mod tests {
             tools: &tools,
             obstacles: &obstacles,
             has_solid: false,
+            wound: None,
+            parted: None,
         };
         let json: Value = serde_json::from_str(&part.json(&[])).expect("JSON");
         // One slab, its Z, one ring from the axis to 20 mm.
