@@ -1,5 +1,7 @@
 //! The part of a program: a second run of it, on the stock that the first one showed.
 
+use std::collections::BTreeMap;
+
 use turnwright_control::Setup;
 use turnwright_diagnostics::{Diagnostic, Severity};
 use turnwright_export::mesh::Mesh;
@@ -83,10 +85,13 @@ pub(crate) fn machined(
             None => {}
         }
     }
+    let part = run.map(PartRun::finish);
     if let Some(measure) = measure {
         measure.finish();
+        measure.threads.known = part.as_ref().map_or(BTreeMap::new(), |part| part.thread_ways.clone());
+        measure.threads.has_stock = part.as_ref().is_some_and(|part| part.has_stock);
     }
-    Ok(run.map(PartRun::finish))
+    Ok(part)
 }
 
 /// The figures that finishing cycles follow, as they are programmed: where compensation leads a round nose along them,

@@ -5,12 +5,14 @@
 //! another lead. The lead must lie within the control's range.
 //!
 //! The lead times the speed is the speed of the long axis; above the largest cutting feed (1422, 1430, else that of
-//! the machine in the setup) the axis could not follow: an alarm, or by policy a warning.
+//! the machine in the setup) the axis could not follow: an alarm, or by policy a warning. That of the assumed machine is
+//! always a warning.
 //!
 //! Source: leads and speed limits of threads, both families.
 
 use turnwright_canon::SpindleState;
 use turnwright_control::policy::{LeadWords, StartAngleUnit, ThreadOverspeed, ThreadWithoutSpindle};
+use turnwright_diagnostics::Diagnostic;
 use turnwright_syntax::{Decimal, Word};
 use turnwright_units::{Angle, Lead, Length};
 
@@ -219,13 +221,31 @@ impl Core {
         Ok(())
     }
 
+    /// Nobody has said what the axis can do: that of the assumed machine is no alarm. Once for each feed.
+    #[cold]
+    fn warn_of_assumed_feed(&mut self, word: Option<&Word>, needed_mm_per_min: f64, limit_mm_per_min: f64) {
+        const KEY: &str = "thread-too-fast-for-assumed-machine";
+        if !self.said.insert((KEY, 0, needed_mm_per_min as u32)) {
+            return;
+        }
+        let place = word.map_or_else(|| self.block_place(), |word| self.place(word));
+        let whole = |mm_per_min: f64| format!("{mm_per_min:.0}");
+        let warning = Diagnostic::warning(KEY).at(place);
+        self.say(warning.with("needed", whole(needed_mm_per_min)).with("limit", whole(limit_mm_per_min)));
+    }
+
     /// The long axis must keep up with the spindle.
     pub(crate) fn check_thread_speed(&mut self, call: &Call<'_>, lead: Lead) -> Result<(), Alarm> {
         let Some(limit_mm_per_min) = self.settings.thread_feed_max_mm_per_min else { return Ok(()) };
-        if lead.0.to_mm() * f64::from(self.present_rpm().0) <= limit_mm_per_min {
+        let needed_mm_per_min = lead.0.to_mm() * f64::from(self.present_rpm().0);
+        if needed_mm_per_min <= limit_mm_per_min {
             return Ok(());
         }
         let word = call.block.word(b'F').or(call.word).copied();
+        if self.settings.thread_feed_is_assumed {
+            self.warn_of_assumed_feed(word.as_ref(), needed_mm_per_min, limit_mm_per_min);
+            return Ok(());
+        }
         match (self.control.policies.thread_overspeed, word) {
             (ThreadOverspeed::Alarm, word) => Err(self.alarm_at("thread-too-fast", word.as_ref())),
             (ThreadOverspeed::Warn, Some(word)) => {

@@ -261,10 +261,11 @@ impl Interpreter {
             control.policies.decimal_rule == turnwright_control::policy::DecimalRule::AlwaysCalculator;
         let mut settings =
             Settings::new(&control.parameters, &control.policies, always, control.limits.number_digits);
-        if setup.machine.is_some() || setup.rates.contains_key("cutting_max_mm_per_min") {
-            // What the control does not limit, the machine that the user named does.
-            let machine_max = setup.machine()?.cutting_max_mm_per_min;
-            settings.thread_feed_max_mm_per_min.get_or_insert(machine_max);
+        if settings.thread_feed_max_mm_per_min.is_none() {
+            // What the control does not limit, the machine does.
+            settings.thread_feed_max_mm_per_min = Some(setup.machine()?.cutting_max_mm_per_min);
+            settings.thread_feed_is_assumed =
+                setup.machine.is_none() && !setup.rates.contains_key("cutting_max_mm_per_min");
         }
         let dispatch = Dispatch::new(&control);
         let macros = Macros::new(&control);

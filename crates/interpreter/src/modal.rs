@@ -193,6 +193,8 @@ pub(crate) struct Settings {
     pub(crate) dwell_in_revolutions: bool,
     /// The fastest that the long axis of a thread may be, when that is limited.
     pub(crate) thread_feed_max_mm_per_min: Option<f64>,
+    /// That limit is the assumed machine's.
+    pub(crate) thread_feed_is_assumed: bool,
     /// The largest cutting feed was set to zero by hand.
     pub(crate) cutting_feed_is_barred: bool,
     pub(crate) thread_speed_check_off: bool,
@@ -386,6 +388,7 @@ impl Settings {
                 .map(|name| parameters.axis_value(name, Axis::Z))
                 .filter(|limit| *limit > 0.0)
                 .reduce(f64::min),
+            thread_feed_is_assumed: false,
             cutting_feed_is_barred: parameters.is_stated("cutting-feed-maximum")
                 && parameters.value("cutting-feed-maximum") == 0.0
                 && Axis::TURNING.map(|axis| parameters.axis_value("cutting-feed-maximum-axis", axis))

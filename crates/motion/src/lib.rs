@@ -52,7 +52,7 @@ pub use run::LEGS_MAX;
 pub use schedule::Schedule;
 pub use spindle::RPM_FENCE;
 pub use summary::{Extents, OPERATIONS_MAX, Operation, OperationKind, Summary};
-pub use thread::{ShortLeadIn, ThreadFault, ThreadPlan, ThreadStretch, lead_in_needed_mm};
+pub use thread::{ThreadFault, ThreadNeed, ThreadPlan, ThreadStretch, lead_in_needed_mm, run_out_needed_mm};
 pub use totals::{Kind, Totals};
 
 /// Relative error of the seconds of lines, circles, threads, rapids and dwells against the model they follow.

@@ -193,7 +193,10 @@ impl Player {
             }
             Action::Thread { .. } => self.thread.add(command, &mut self.clock, &self.dynamics),
             _ => {
-                self.wait_while_held(block, sink);
+                if !self.clock.is_led() {
+                    // A tap comes out first.
+                    self.wait_while_held(block, sink);
+                }
                 let timing = self.clock.advance(command);
                 let shift_s = self.shift_gear(timing.kind, block, sink);
                 self.stand(timing.seconds - shift_s, timing.kind, block, sink);

@@ -220,29 +220,43 @@ pub fn lead_in_needed_mm(lead_mm: f64, rpm: f64, limits: RunLimits) -> f64 {
     drives.max(limits.ramp_mm(speed))
 }
 
-/// A thread that starts closer to the face of the part, Z0, than its axis needs.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShortLeadIn {
-    /// What it needs, mm.
-    pub needed_mm: f64,
-    /// What there is, mm.
-    pub has_mm: f64,
+/// The way behind its last full turn that a thread needs, mm: what the axis takes to rest, and what a drive is behind;
+/// the longer of both.
+pub fn run_out_needed_mm(lead_mm: f64, rpm: f64, limits: RunLimits) -> f64 {
+    let speed = lead_mm * rpm / 60.0;
+    (DRIVE_S * speed).max(limits.ramp_mm(speed))
 }
 
-impl ShortLeadIn {
-    /// Judges the first move of a thread along Z through Z0 into the part. Of others nobody knows where the part begins.
+/// The ways that a thread move needs, mm along its long axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThreadNeed {
+    /// Before the work.
+    pub lead_in_mm: f64,
+    /// Behind the last full turn.
+    pub run_out_mm: f64,
+    /// The way in front of Z0, of a move along Z through Z0 into the part: where nobody knows the stock, that is its face.
+    pub before_zero_mm: Option<f64>,
+}
+
+impl ThreadNeed {
+    /// That of a move in step with the spindle.
     pub fn of(command: &Command, timing: &Timing, dynamics: &Dynamics) -> Option<Self> {
-        let Action::Thread { to, lead, is_chained: false, .. } = &command.action else { return None };
+        let Action::Thread { to, lead, lead_end, .. } = &command.action else { return None };
         let (rpm, from) = (timing.rpm?.max, timing.from);
         let way = *to - from;
         let [x_mm, z_mm] = [way.x.to_mm().abs(), way.z.to_mm().abs()];
-        let has_mm = from.z.to_mm();
-        if x_mm > z_mm || has_mm <= 0.0 || to.z.to_mm() >= 0.0 {
+        let long_mm = x_mm.max(z_mm);
+        if long_mm == 0.0 {
             return None;
         }
-        let limits = dynamics.threading(&[x_mm / z_mm, 1.0, 0.0, 0.0, 0.0, 0.0]);
-        let needed_mm = lead_in_needed_mm(lead.0.to_mm(), rpm, limits);
-        (has_mm < needed_mm).then_some(Self { needed_mm, has_mm })
+        let limits = dynamics.threading(&[x_mm / long_mm, z_mm / long_mm, 0.0, 0.0, 0.0, 0.0]);
+        let lead_end = lead_end.as_deref().copied().unwrap_or(*lead);
+        let is_through_zero = x_mm <= z_mm && from.z.to_mm() > 0.0 && to.z.to_mm() < 0.0;
+        Some(Self {
+            lead_in_mm: lead_in_needed_mm(lead.0.to_mm().abs(), rpm, limits),
+            run_out_mm: run_out_needed_mm(lead_end.0.to_mm().abs(), rpm, limits),
+            before_zero_mm: is_through_zero.then(|| from.z.to_mm()),
+        })
     }
 }
 
@@ -260,6 +274,10 @@ mod tests {
     fn the_rule_of_thumb_for_lead_in() {
         // Lead 1.5 at 1200 rpm: 30 mm/s, 1 mm in a thirtieth of a second, 3.6 times that for one per cent.
         assert!((lead_in_needed_mm(1.5, 1200.0, LIMITS) - 3.605).abs() < 0.001);
+        // The run-out: that millimetre, L·n/1800; the axis alone takes 0.9 mm to rest.
+        assert!((run_out_needed_mm(1.5, 1200.0, LIMITS) - 1.0).abs() < 0.001);
+        let slow_axis = RunLimits { acceleration_mm_per_s2: 300.0, jerk_mm_per_s3: 10_000.0 };
+        assert!((run_out_needed_mm(1.5, 1200.0, slow_axis) - 1.95).abs() < 0.001);
     }
 
     #[test]

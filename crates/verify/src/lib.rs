@@ -19,6 +19,7 @@ pub mod measuring;
 pub mod part;
 pub mod target;
 mod text;
+pub mod thread_ways;
 
 pub use checks::{Checked, Checks};
 pub use inference::{Assumption, Inference, Inferred};

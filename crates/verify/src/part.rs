@@ -27,6 +27,7 @@ use turnwright_units::{Position, WorkTip};
 
 use crate::figures::{BlockLine, Figure};
 use crate::target::{Aimed, Loss, Target, Watch, deepest_in_reach, rest_of_figure};
+use crate::thread_ways::{ThreadWay, ThreadWays};
 
 /// Moves that are cut out of the stock.
 pub const PART_MOVES_MAX: u64 = 5_000_000;
@@ -105,6 +106,7 @@ pub struct PartRun {
     /// Nothing of the stock is confirmed before the first cut.
     has_cut: bool,
     is_behind_thread: bool,
+    thread_ways: ThreadWays,
 }
 
 /// A rapid that meets a stock that is only assumed.
@@ -131,6 +133,10 @@ pub struct Part {
     pub half_planes: Option<Box<HalfPlanes>>,
     /// The number of the command with which it came off, when it did.
     pub parted: Option<u64>,
+    /// The ways before and behind the threads, by program text and line.
+    pub thread_ways: BTreeMap<(u32, u32), ThreadWay>,
+    /// The stock is that of the setup, not inferred.
+    pub has_stock: bool,
     /// What was hit, and what is not shown.
     pub findings: Vec<Diagnostic>,
     /// Where and when, for each of the findings that have a place.
@@ -247,6 +253,7 @@ impl PartRun {
             doubts: Vec::new(),
             has_cut: false,
             is_behind_thread: false,
+            thread_ways: ThreadWays::default(),
         }))
     }
 
@@ -317,6 +324,13 @@ impl PartRun {
         }
         let from = machining.at();
         let parted = machining.parted();
+        match (&command.action, &self.plain) {
+            (Action::Thread { to, .. }, Some(plain)) => {
+                self.thread_ways.add(command, middle(plain.at()), middle(*to), plain.section());
+            }
+            _ if is_move => self.thread_ways.finish_chain(),
+            _ => {}
+        }
         let removed = machining.advance(command, &mut |event| {
             if notebook.has_stock || event.kind != EventKind::RapidIntoStock {
                 notebook.tell(&event, *commands);
@@ -338,6 +352,9 @@ impl PartRun {
         if !edges.is_idle() {
             let ends = (from, machining.at());
             edges.add((command, *commands), notebook.tool, ends, &removed, machining.section());
+        }
+        if let (Action::Feed { .. }, Some(bounds)) = (&command.action, removed.bounds) {
+            self.thread_ways.note_cut(bounds);
         }
         if let Some(history) = history {
             history.add(*commands, &removed, machining.section());
@@ -432,6 +449,8 @@ impl PartRun {
             threads: self.machining.threads().to_vec(),
             parted: self.parted,
             half_planes: self.half_planes.and_then(|one| one.finish(&self.machining)).map(Box::new),
+            thread_ways: self.thread_ways.finish(self.notebook.has_stock),
+            has_stock: self.notebook.has_stock,
             findings: self.notebook.findings,
             marks: self.notebook.marks,
             history: self.history,
@@ -439,6 +458,10 @@ impl PartRun {
             obstacles: self.obstacles,
         }
     }
+}
+
+fn middle(at: Position<WorkTip>) -> Point {
+    Point { x: at.x.to_mm(), z: at.z.to_mm() }
 }
 
 fn place_of(origin: &Origin) -> Place {

@@ -5,9 +5,10 @@ mod human;
 mod json;
 mod page;
 pub(crate) mod sizes;
+mod threads;
 mod times;
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 
 use turnwright_canon::{Action, Command};
 use turnwright_control::{CodeSystem, Control, Language, Machine};
@@ -17,9 +18,7 @@ use turnwright_export::part::PartShape;
 use turnwright_export::passes::Cycle;
 use turnwright_export::path::PathRecorder;
 use turnwright_export::timeline::Timeline;
-use turnwright_motion::{
-    BlockTimes, Kind, MachineRates, Operation, OperationKind, Schedule, ShortLeadIn, Summary,
-};
+use turnwright_motion::{BlockTimes, Kind, MachineRates, Operation, OperationKind, Schedule, Summary};
 use turnwright_stock::Removed;
 use turnwright_units::{Length, Position, WorkTip, write_millimetres};
 use turnwright_verify::Assumption;
@@ -28,6 +27,7 @@ use turnwright_verify::cutting::{CuttingData, CuttingRun};
 use turnwright_verify::measuring::Judged;
 use turnwright_verify::part::Part;
 
+pub(crate) use self::threads::Threads;
 pub(crate) use self::times::totals_json;
 use crate::finding::Finding;
 use crate::operator::panel_sentences;
@@ -50,8 +50,8 @@ pub(crate) struct Measure {
     pub(crate) timeline: Option<Timeline>,
     /// The table of times as far as it has not been written.
     pub(crate) table: Option<Vec<u8>>,
-    /// Threads that start too close to the work, once a line.
-    pub(crate) short_lead_ins: BTreeMap<(u32, u32), ShortLeadIn>,
+    /// What the threads need.
+    pub(crate) threads: Threads,
     /// What the commands whose time is not known yet took away.
     removed: VecDeque<Option<Removed>>,
     /// Where time could be saved.
@@ -61,8 +61,6 @@ pub(crate) struct Measure {
     /// What it found.
     pub(crate) advice: Vec<Advice>,
     rates: MachineRates,
-    /// The spindle is led with a tap.
-    is_led: bool,
 }
 
 /// What is kept of a program besides its sums.
@@ -89,13 +87,12 @@ impl Measure {
             path: kept.path.then(|| PathRecorder::new(start, rapid_x, rapid_z)),
             timeline: kept.timeline.then(Timeline::default),
             table: kept.table.then_some(table),
-            short_lead_ins: BTreeMap::new(),
+            threads: Threads::default(),
             removed: VecDeque::new(),
             advisor: None,
             cutting: None,
             advice: Vec::new(),
             rates,
-            is_led: false,
         }
     }
 
@@ -123,13 +120,7 @@ impl Measure {
             let source = SourceId(source);
             Place { line, line_offset: u64::MAX, column: 1, end_column: 1, source }
         };
-        let short_lead_ins = self.short_lead_ins.iter().map(move |((source, line), short)| {
-            Diagnostic::warning("thread-start-too-close")
-                .at(place(*source, *line))
-                .with("needed", format!("{:.1}", short.needed_mm))
-                .with("has", format!("{:.1}", short.has_mm))
-        });
-        short_lead_ins.chain(self.schedule.stray().map(|stray| {
+        self.threads.findings().into_iter().chain(self.schedule.stray().map(|stray| {
             Diagnostic::alarm("spindle-fluctuation")
                 .at(place(stray.source, stray.line))
                 .with("ordered", format!("{:.0}", stray.ordered_rpm))
@@ -165,16 +156,7 @@ impl Measure {
             {
                 write_times_row(table, &block);
             }
-            if let Action::RigidTapping(is_led) = &command.action {
-                self.is_led = *is_led;
-            }
-            // A tap that leads the spindle needs no way to get into step.
-            if let Some(dynamics) = self.rates.dynamics.as_ref().filter(|_| !self.is_led)
-                && let Some(short) = ShortLeadIn::of(&command, &timing, dynamics)
-            {
-                let line = (command.origin.source, command.origin.line);
-                self.short_lead_ins.entry(line).or_insert(short);
-            }
+            self.threads.add(&command, &timing, &self.rates);
             if let Some(path) = &mut self.path {
                 path.add(&command, timing.seconds);
             }
