@@ -33,7 +33,7 @@ use board::Board;
 use turnwright_canon::{Action, Shape};
 use turnwright_control::{Control, Setup};
 use turnwright_diagnostics::SourceId;
-use turnwright_export::formats::jsonl;
+use turnwright_export::formats::jsonl::CommandWriter;
 use turnwright_geometry::{Point, sweep_rad};
 use turnwright_interpreter::{Environment, Interpreter, Options, ReadFault, Step};
 use turnwright_syntax::{Block, Tree, find_line_end, scan_block};
@@ -204,13 +204,13 @@ fn interpret(path: &Path) -> Result<u64, String> {
 fn listing(path: &Path) -> Result<(), String> {
     use std::io::Write;
     let (mut interpreter, mut texts) = interpreter(path)?;
-    let decimals = interpreter.decimals();
+    let mut writer = CommandWriter::new(interpreter.decimals());
     let mut out = Vec::with_capacity(1 << 17);
     let mut sink = File::create("/dev/null").map_err(|error| error.to_string())?;
     loop {
         match interpreter.step(&mut texts) {
             Step::Emit(command) => {
-                jsonl::write_command(&mut out, &command, decimals);
+                writer.write(&mut out, &command);
                 if out.len() > 1 << 16 {
                     sink.write_all(&out).map_err(|error| error.to_string())?;
                     out.clear();

@@ -8,7 +8,7 @@ use std::fmt::Write;
 use turnwright_canon::{Action, Command, Origin, Shape};
 use turnwright_control::{Control, Setup};
 use turnwright_diagnostics::SourceId;
-use turnwright_export::formats::jsonl;
+use turnwright_export::formats::jsonl::CommandWriter;
 use turnwright_geometry::{Bend, Outline, Point, Segment};
 use turnwright_interpreter::{Environment, Interpreter, Options, ReadFault, Step};
 use turnwright_motion::{Dynamics, MachineRates, Schedule};
@@ -65,13 +65,14 @@ fn interpret(program: &str, count: u32, lists: bool) -> Result<(), String> {
     let mut interpreter = Interpreter::new(control, &Setup::default(), SourceId(0), Options::default())
         .map_err(|fault| fault.message)?;
     let mut out = Vec::with_capacity(1 << 16);
+    let mut writer = CommandWriter::new(3);
     let mut moves = 0;
     while moves < count {
         match interpreter.step(&mut memory) {
             Step::Emit(command) => {
                 moves += u32::from(command.action.end_point().is_some());
                 if lists {
-                    jsonl::write_command(&mut out, &command, 3);
+                    writer.write(&mut out, &command);
                 }
                 if out.len() > 1 << 15 {
                     out.clear();

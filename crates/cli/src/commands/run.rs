@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use turnwright_diagnostics::{Diagnostic, Severity};
 use turnwright_export::formats::cutting_svg::write_cutting_svg;
 use turnwright_export::formats::dxf::write_path_dxf;
-use turnwright_export::formats::jsonl;
+use turnwright_export::formats::jsonl::{self, CommandWriter};
 use turnwright_export::formats::part_svg::PartDrawing;
 use turnwright_export::formats::svg::{PictureOptions, write_svg};
 use turnwright_export::formats::time_svg::{TimePicture, write_time_svg};
@@ -60,10 +60,11 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     let mut checks = Checks::new(execution.interpreter().position());
     let mut progress = Progress::new(&text, printer);
     let decimals = execution.interpreter().decimals();
+    let mut writer = CommandWriter::new(decimals);
     while let Some(command) = execution.next_command() {
         checks.add(&command);
         if let Some(folder) = &mut folder {
-            write_json(&mut folder.buffer, &command, decimals, &execution);
+            write_json(&mut folder.buffer, &mut writer, &command, &execution);
             folder.pour(BUFFER_BYTES)?;
         }
         if let Some(passes) = &mut passes {

@@ -6,7 +6,7 @@
 use std::io::{self, IsTerminal, Write};
 
 use turnwright_canon::{Command, write_listing};
-use turnwright_export::formats::jsonl;
+use turnwright_export::formats::jsonl::{self, CommandWriter};
 
 use crate::arguments::{Trace, TraceFormat};
 use crate::environment::ProgramText;
@@ -27,6 +27,7 @@ pub(crate) fn run(options: &Trace, printer: &Printer) -> Result<Status, Fault> {
     let session = Session::choose(&text, &options.machine, printer.speech)?;
     let mut execution = Execution::new(&text, &session, &options.machine)?;
     let decimals = execution.interpreter().decimals();
+    let mut writer = CommandWriter::new(decimals);
 
     let mut buffer = Vec::with_capacity(BUFFER_BYTES + 4096);
     if format == TraceFormat::Jsonl {
@@ -34,7 +35,7 @@ pub(crate) fn run(options: &Trace, printer: &Printer) -> Result<Status, Fault> {
     }
     while let Some(command) = execution.next_command() {
         match format {
-            TraceFormat::Jsonl => write_json(&mut buffer, &command, decimals, &execution),
+            TraceFormat::Jsonl => write_json(&mut buffer, &mut writer, &command, &execution),
             TraceFormat::Text => write_line(&mut buffer, &command, decimals),
             TraceFormat::Human => {
                 let _ = write!(buffer, "{:>6}  ", command.origin.line);
@@ -63,10 +64,15 @@ pub(crate) fn run(options: &Trace, printer: &Printer) -> Result<Status, Fault> {
 
 /// One command as JSON, with its file when that is another than the program's.
 #[inline]
-pub(crate) fn write_json(buffer: &mut Vec<u8>, command: &Command, decimals: u8, execution: &Execution<'_>) {
+pub(crate) fn write_json(
+    buffer: &mut Vec<u8>,
+    writer: &mut CommandWriter,
+    command: &Command,
+    execution: &Execution<'_>,
+) {
     match execution.other_file(command.origin.source) {
-        None => jsonl::write_command(buffer, command, decimals),
-        Some(file) => jsonl::write_command_of_file(buffer, command, decimals, file),
+        None => writer.write(buffer, command),
+        Some(file) => writer.write_of_file(buffer, command, file),
     }
 }
 

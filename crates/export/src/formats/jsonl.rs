@@ -13,8 +13,8 @@
 //! folder) ends with `file`, the name of that file. Writing a command allocates nothing but room in the buffer.
 
 use turnwright_canon::{
-    Action, Command, Coolant, Curve, Dwell, Interpolation, Origin, OtherAxes, PathMode, Shape, SidePlane,
-    SpindleSpeed, SpindleState,
+    Action, Command, Coolant, Curve, CycleOrigin, Dwell, Interpolation, Origin, OtherAxes, PathMode, Shape,
+    SidePlane, SpindleSpeed, SpindleState,
 };
 use turnwright_units::{
     Feed, LeastIncrement, Length, Position, WorkNose, WorkTip, write_degrees, write_fixed, write_millimetres,
@@ -59,9 +59,105 @@ pub fn write_header(out: &mut Vec<u8>, header: &TraceHeader<'_>) {
     out.extend_from_slice(b",\"units\":\"mm\",\"x\":\"diameter\",\"frame\":\"work\"}\n");
 }
 
-/// Writes one command and its line end, its lengths rounded to `decimals` places.
-pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
-    match &command.action {
+/// Text that many lines have in common, made once for what it says.
+#[derive(Clone, Debug)]
+struct Common<K> {
+    says: Option<K>,
+    text: Vec<u8>,
+}
+
+impl<K: PartialEq> Common<K> {
+    const fn new() -> Self {
+        Self { says: None, text: Vec::new() }
+    }
+
+    #[inline]
+    fn write(&mut self, out: &mut Vec<u8>, says: K, make: impl FnOnce(&mut Vec<u8>, &K)) {
+        if self.says.as_ref() != Some(&says) {
+            self.text.clear();
+            make(&mut self.text, &says);
+            self.says = Some(says);
+        }
+        out.extend_from_slice(&self.text);
+    }
+}
+
+/// Where a command outside cycles stands, without its line and sequence number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Surroundings {
+    program: Option<u32>,
+    depth: u8,
+    runs_on: bool,
+}
+
+/// Writes commands, a line each.
+#[derive(Clone, Debug)]
+pub struct CommandWriter {
+    decimals: u8,
+    feed: Common<Feed>,
+    surroundings: Common<Surroundings>,
+}
+
+impl CommandWriter {
+    /// Lengths are rounded to so many decimal places.
+    pub const fn new(decimals: u8) -> Self {
+        Self { decimals, feed: Common::new(), surroundings: Common::new() }
+    }
+
+    /// Writes one command and its line end.
+    pub fn write(&mut self, out: &mut Vec<u8>, command: &Command) {
+        let decimals = self.decimals;
+        match &command.action {
+            // No line of its own: each move says where it ends in the coordinates in force.
+            Action::Relocate { .. } => return,
+            Action::Feed { to, shape, feed, others } => {
+                out.extend_from_slice(br#"{"op":"feed""#);
+                write_end_point(out, *to, decimals);
+                match shape {
+                    Shape::Line => out.extend_from_slice(br#","shape":"line""#),
+                    shape => write_shape(out, *to, shape, others.as_deref(), decimals),
+                }
+                self.feed.write(out, *feed, write_feed);
+                if let Some(others) = others {
+                    write_others(out, others, decimals);
+                }
+            }
+            action => write_action(out, action, decimals),
+        }
+        if let Some(nose) = &command.nose {
+            write_nose(out, **nose, decimals);
+        }
+        let Origin { line, sequence, program, depth, cycle, runs_on, .. } = command.origin;
+        write_number(out, br#","line":"#, line);
+        if let Some(sequence) = sequence {
+            write_number(out, br#","n":"#, sequence);
+        }
+        match cycle {
+            None => {
+                self.surroundings.write(out, Surroundings { program, depth, runs_on }, write_surroundings)
+            }
+            Some(cycle) => {
+                write_program(out, program, depth);
+                write_cycle(out, &cycle);
+                write_end(out, runs_on);
+            }
+        }
+    }
+
+    /// The same for a line of another file than that of the program: the object ends with `file`.
+    #[cold]
+    pub fn write_of_file(&mut self, out: &mut Vec<u8>, command: &Command, file: &str) {
+        let before = out.len();
+        self.write(out, command);
+        if out.len() > before {
+            write_file(out, file);
+        }
+    }
+}
+
+/// What is no feed, without the fields that every command has.
+fn write_action(out: &mut Vec<u8>, action: &Action, decimals: u8) {
+    match action {
         Action::Rapid { to, path: _, others } => {
             out.extend_from_slice(br#"{"op":"rapid""#);
             write_end_point(out, *to, decimals);
@@ -69,12 +165,7 @@ pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
                 write_others(out, others, decimals);
             }
         }
-        Action::Feed { to, shape, feed, others } => {
-            write_feed(out, *to, shape, *feed, others.as_deref(), decimals);
-            if let Some(others) = others {
-                write_others(out, others, decimals);
-            }
-        }
+        Action::Feed { .. } | Action::Relocate { .. } => {}
         Action::Thread { to, shape, lead, lead_end, start_angle, is_chained } => {
             out.extend_from_slice(br#"{"op":"thread""#);
             write_end_point(out, *to, decimals);
@@ -122,8 +213,6 @@ pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
                 write_number(out, br#","max_rpm":"#, rpm.0);
             }
         }
-        // No line of its own: each move says where it ends in the coordinates in force.
-        Action::Relocate { .. } => return,
         Action::Interpolation(interpolation) => write_interpolation(out, *interpolation, decimals),
         Action::Coupling(ratio) => {
             write_number(out, br#"{"op":"coupling","spindle":"#, ratio.map_or(0, |ratio| ratio.spindle));
@@ -165,20 +254,6 @@ pub fn write_command(out: &mut Vec<u8>, command: &Command, decimals: u8) {
             write_json_string(out, text);
         }
     }
-    if let Some(nose) = &command.nose {
-        write_nose(out, **nose, decimals);
-    }
-    write_origin(out, &command.origin);
-}
-
-/// As [`write_command`], for a line of another file than that of the program: the object ends with `file`.
-#[cold]
-pub fn write_command_of_file(out: &mut Vec<u8>, command: &Command, decimals: u8, file: &str) {
-    let before = out.len();
-    write_command(out, command, decimals);
-    if out.len() > before {
-        write_file(out, file);
-    }
 }
 
 /// The centre of the nose at the end of a move.
@@ -204,32 +279,18 @@ pub fn write_alarm(out: &mut Vec<u8>, alarm: &TraceAlarm<'_>) {
     write_json_string(out, alarm.key);
     out.extend_from_slice(br#","message":"#);
     write_json_string(out, alarm.message);
-    let origin = Origin {
-        sequence: alarm.sequence,
-        program: alarm.program,
-        depth: alarm.depth,
-        ..Origin::line(alarm.line)
-    };
-    write_origin(out, &origin);
+    write_number(out, br#","line":"#, alarm.line);
+    if let Some(sequence) = alarm.sequence {
+        write_number(out, br#","n":"#, sequence);
+    }
+    write_program(out, alarm.program, alarm.depth);
+    write_end(out, false);
     if let Some(file) = alarm.file {
         write_file(out, file);
     }
 }
 
-fn write_feed(
-    out: &mut Vec<u8>,
-    to: Position<WorkTip>,
-    shape: &Shape,
-    feed: Feed,
-    others: Option<&OtherAxes>,
-    decimals: u8,
-) {
-    out.extend_from_slice(br#"{"op":"feed""#);
-    write_end_point(out, to, decimals);
-    match shape {
-        Shape::Line => out.extend_from_slice(br#","shape":"line""#),
-        shape => write_shape(out, to, shape, others, decimals),
-    }
+fn write_feed(out: &mut Vec<u8>, feed: &Feed) {
     write_length(out, br#","f":"#, feed.length(), FINE_DECIMALS);
     out.extend_from_slice(match feed {
         Feed::PerRevolution(_) => br#","fu":"mm/rev""#.as_slice(),
@@ -326,36 +387,40 @@ fn write_shape(
     write_fixed(out, tilt.millidegrees(), 3);
 }
 
-/// The fields that every command has, and the end of the line.
-fn write_origin(out: &mut Vec<u8>, origin: &Origin) {
-    write_number(out, br#","line":"#, origin.line);
-    if let Some(sequence) = origin.sequence {
-        write_number(out, br#","n":"#, sequence);
-    }
-    if let Some(program) = origin.program {
+fn write_surroundings(out: &mut Vec<u8>, &Surroundings { program, depth, runs_on }: &Surroundings) {
+    write_program(out, program, depth);
+    write_end(out, runs_on);
+}
+
+fn write_program(out: &mut Vec<u8>, program: Option<u32>, depth: u8) {
+    if let Some(program) = program {
         write_number(out, br#","o":"#, program);
     }
-    write_number(out, br#","depth":"#, origin.depth.into());
-    if let Some(cycle) = &origin.cycle {
-        // The label as a person writes it: two digits at least, a tenth only when there is one.
-        out.extend_from_slice(br#","cycle":"G"#);
-        let (whole, tenth) = (cycle.label.0 / 10, cycle.label.0 % 10);
-        if whole < 10 {
-            out.push(b'0');
-        }
-        write_whole(out, whole.into());
-        if tenth != 0 {
-            out.extend_from_slice(&[b'.', b'0' + tenth as u8]);
-        }
-        out.push(b'"');
-        if cycle.pass > 0 {
-            write_number(out, br#","pass":"#, cycle.pass);
-        }
-        out.extend_from_slice(br#","phase":""#);
-        out.extend_from_slice(cycle.phase.word().as_bytes());
-        out.push(b'"');
+    write_number(out, br#","depth":"#, depth.into());
+}
+
+fn write_cycle(out: &mut Vec<u8>, cycle: &CycleOrigin) {
+    // The label as a person writes it: two digits at least, a tenth only when there is one.
+    out.extend_from_slice(br#","cycle":"G"#);
+    let (whole, tenth) = (cycle.label.0 / 10, cycle.label.0 % 10);
+    if whole < 10 {
+        out.push(b'0');
     }
-    if origin.runs_on {
+    write_whole(out, whole.into());
+    if tenth != 0 {
+        out.extend_from_slice(&[b'.', b'0' + tenth as u8]);
+    }
+    out.push(b'"');
+    if cycle.pass > 0 {
+        write_number(out, br#","pass":"#, cycle.pass);
+    }
+    out.extend_from_slice(br#","phase":""#);
+    out.extend_from_slice(cycle.phase.word().as_bytes());
+    out.push(b'"');
+}
+
+fn write_end(out: &mut Vec<u8>, runs_on: bool) {
+    if runs_on {
         out.extend_from_slice(br#","runs_on":true"#);
     }
     out.extend_from_slice(b"}\n");
@@ -426,7 +491,7 @@ fn write_json_string(out: &mut Vec<u8>, text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use turnwright_canon::{CycleLabel, CycleOrigin, Phase, RapidPath, Turn};
+    use turnwright_canon::{CycleLabel, Phase, RapidPath, Turn};
     use turnwright_units::{
         Angle, FeedPerMinute, FeedPerRevolution, Lead, Radius, Revolutions, Rpm, Seconds, SurfaceSpeed,
     };
@@ -438,7 +503,7 @@ mod tests {
 
     fn line_of(action: Action, origin: Origin) -> String {
         let mut out = Vec::new();
-        write_command(&mut out, &Command::new(action, origin), 3);
+        CommandWriter::new(3).write(&mut out, &Command::new(action, origin));
         String::from_utf8(out).expect("JSON is UTF-8")
     }
 
@@ -681,9 +746,9 @@ mod tests {
     fn a_line_of_another_file_names_it_last() {
         let mut out = Vec::new();
         let command = Command::new(Action::Stop, Origin::line(3));
-        write_command_of_file(&mut out, &command, 3, "O2.nc");
+        CommandWriter::new(3).write_of_file(&mut out, &command, "O2.nc");
         let nowhere = Action::Relocate { to: at(0, 0), others: None };
-        write_command_of_file(&mut out, &Command::new(nowhere, Origin::line(4)), 3, "O2.nc");
+        CommandWriter::new(3).write_of_file(&mut out, &Command::new(nowhere, Origin::line(4)), "O2.nc");
         assert_eq!(
             String::from_utf8_lossy(&out),
             "{\"op\":\"stop\",\"line\":3,\"depth\":0,\"file\":\"O2.nc\"}\n"
@@ -711,17 +776,41 @@ mod tests {
     }
 
     #[test]
+    fn what_lines_have_in_common_is_made_anew_when_it_changes() {
+        let feeds = [
+            Feed::PerMinute(FeedPerMinute(Length::from_mm(200))),
+            Feed::PerRevolution(FeedPerRevolution(Length::from_mm(200))),
+            Feed::PerMinute(FeedPerMinute(Length::from_mm(250))),
+        ];
+        let places = [(None, 0, false), (Some(7), 0, false), (Some(7), 1, false), (Some(7), 1, true)];
+        let cycle = CycleOrigin { label: CycleLabel(760), pass: 1, phase: Phase::Cut };
+        let mut writer = CommandWriter::new(3);
+        for index in 0..200usize {
+            let (feed, place) = (feeds[index * 7 % 5 % 3], places[index * 3 % 7 % 4]);
+            let action = Action::Feed { to: at(1_000, 0), shape: Shape::Line, feed, others: None };
+            let (program, depth, runs_on) = place;
+            let cycle = index.is_multiple_of(6).then_some(cycle);
+            let origin = Origin { program, depth, runs_on, cycle, ..Origin::line(index as u32) };
+            let command = Command::new(action, origin);
+            let (mut mine, mut fresh) = (Vec::new(), Vec::new());
+            writer.write(&mut mine, &command);
+            CommandWriter::new(3).write(&mut fresh, &command);
+            assert_eq!(mine, fresh, "{}", fresh.escape_ascii());
+        }
+    }
+
+    #[test]
     fn lengths_are_rounded_to_the_increment() {
         let mut out = Vec::new();
         let to = Position::<WorkTip>::new(Radius(Length::from_nm(13_620_710)), Length::from_nm(-2_540));
         let action = Action::Rapid { to, path: RapidPath::Straight, others: None };
-        write_command(&mut out, &Command::new(action, Origin::line(1)), 3);
+        CommandWriter::new(3).write(&mut out, &Command::new(action, Origin::line(1)));
         assert!(out.starts_with(br#"{"op":"rapid","x":27.241,"z":-0.003,"#));
         // Both rounded to a hundredth, as the coarsest increment asks for; never "-0".
         out.clear();
         let to = Position::<WorkTip>::new(Radius::ZERO, Length::from_nm(-LeastIncrement::METRIC_C.nm()));
         let action = Action::Rapid { to, path: RapidPath::Straight, others: None };
-        write_command(&mut out, &Command::new(action, Origin::line(1)), 2);
+        CommandWriter::new(2).write(&mut out, &Command::new(action, Origin::line(1)));
         assert!(out.starts_with(br#"{"op":"rapid","x":0,"z":0,"#));
     }
 }
