@@ -6,7 +6,8 @@
 //! as a separate program when it is installed; without it only our own figures are printed.
 //! `table [BLOCKS]` does all of this and writes `docs/performance.md`: every goal beside what was measured.
 //! `removal` takes material away beside a polyline library (R1, R3, R4).
-//! `motion [TICKS]` plans paths and plays programs beside `rsruckig` (T1 to T5).
+//! `motion [TICKS]` plans paths and plays programs beside `rsruckig` (T1 to T5); `planner` does so beside LinuxCNC's own
+//! planner, when its packages `linuxcnc-uspace` and `linuxcnc-uspace-dev` are installed (T2, T3, T6).
 //! `work NAME COUNT` is what `cargo xtask guard` counts the instructions of.
 //! `cycles` runs P7 and a figure of 100 pockets alone; `generate DIR [BLOCKS]`, `lex FILE`, `tree FILE`, `interpret FILE`, `listing FILE` do single steps.
 
@@ -16,6 +17,8 @@ mod cycles;
 mod generate;
 #[cfg(feature = "peers")]
 mod job;
+#[cfg(feature = "peers")]
+mod linuxcnc;
 #[cfg(feature = "peers")]
 mod motion;
 #[cfg(feature = "peers")]
@@ -60,6 +63,8 @@ fn main() -> ExitCode {
         #[cfg(feature = "peers")]
         ["removal"] => removal::run(1_000, 10, &mut Board::default()).and_then(|()| removal::growth(10_000, 10, &mut Board::default())),
         #[cfg(feature = "peers")]
+        ["planner"] => linuxcnc::run(&mut Board::default()),
+        #[cfg(feature = "peers")]
         ["motion"] => motion::run(10_000_000, &mut Board::default()),
         #[cfg(feature = "peers")]
         ["motion", ticks] => motion::run(ticks.parse().unwrap_or(10_000_000), &mut Board::default()),
@@ -72,7 +77,7 @@ fn main() -> ExitCode {
         #[cfg(feature = "peers")]
         ["gcode", file] => words::read(Path::new(file)),
         _ => {
-            Err("usage: table [BLOCKS] | compare [BLOCKS] | cycles | removal | motion [TICKS] | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE"
+            Err("usage: table [BLOCKS] | compare [BLOCKS] | cycles | removal | motion [TICKS] | planner | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE"
                 .to_string())
         }
     };

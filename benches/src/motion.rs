@@ -12,13 +12,18 @@ use turnwright_motion::{Dynamics, MachineRates, Player, Sample, Schedule};
 use turnwright_units::{Feed, FeedPerMinute, Length, Position, Radius, WorkTip};
 
 use crate::board::Board;
-use crate::job;
+use crate::{job, linuxcnc};
 
 /// xorshift64*, seeded.
-struct Random(u64);
+pub struct Random(u64);
 
 impl Random {
-    fn part(&mut self) -> f64 {
+    pub const fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// From 0 to 1.
+    pub fn part(&mut self) -> f64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
         self.0 ^= self.0 >> 27;
@@ -63,7 +68,8 @@ impl Stopwatch {
 /// Prints the table; `samples` ticks are looked at for limits.
 pub fn run(samples: u64, board: &mut Board) -> Result<(), String> {
     segments(board)?;
-    legs(board);
+    legs();
+    linuxcnc::run(board)?;
     ticks(board);
     job::run((samples / 4).max(1_000_000), board)?;
     programs(samples, board)
@@ -143,9 +149,9 @@ fn wave(count: usize, mm: f64, mm_per_min: f64) -> Vec<Command> {
 }
 
 /// T2: what a leg costs until its time is known, corners and look-ahead included.
-fn legs(board: &mut Board) {
+fn legs() {
     const COUNT: usize = 400_000;
-    for (goal, mm_per_min) in [("T2", 200.0), ("T2 fast", 3000.0)] {
+    for mm_per_min in [200.0, 3000.0] {
         let commands = wave(COUNT, 0.13, mm_per_min);
         let mut schedule = Schedule::new(at(30.0, 0.0), rates());
         let started = Stopwatch::start();
@@ -161,7 +167,6 @@ fn legs(board: &mut Board) {
             seconds += timing.seconds;
         }
         let ns = started.nanoseconds_each(COUNT);
-        board.note(goal, ns);
         println!(
             "T2 legs of 0.13 mm at F{mm_per_min:<5} {ns:7.0} ns a leg, look-ahead 2048; {seconds:.0} s of machine time"
         );
@@ -198,7 +203,7 @@ fn ticks(board: &mut Board) {
     nanoseconds.sort_unstable();
     let of = |part: f64| nanoseconds[((nanoseconds.len() - 1) as f64 * part) as usize];
     let mean = nanoseconds.iter().map(|ns| u64::from(*ns)).sum::<u64>() as f64 / nanoseconds.len() as f64;
-    board.note("T3", mean);
+    board.note("T3 path", mean);
     board.note("T3 p99.9", f64::from(of(0.999)));
     println!(
         "T3 a tick of the path: mean {mean:.0} ns, p99 {} ns, p99.9 {} ns ({} ticks, the clock's own cost included)",
