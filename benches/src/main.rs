@@ -9,7 +9,8 @@
 //! `motion [TICKS]` plans paths and plays programs beside `rsruckig` (T1 to T5); `planner` does so beside LinuxCNC's own
 //! planner, when its packages `linuxcnc-uspace` and `linuxcnc-uspace-dev` are installed (T2, T3, T6).
 //! `work NAME COUNT` is what `cargo xtask guard` counts the instructions of.
-//! `cycles` runs P7 and a figure of 100 pockets alone; `generate DIR [BLOCKS]`, `lex FILE`, `tree FILE`, `interpret FILE`, `listing FILE` do single steps.
+//! `cycles` runs P7 and a figure of 100 pockets alone; `generate DIR [BLOCKS]`, `lex FILE`, `tree FILE`, `interpret FILE`, `listing FILE` do single
+//! steps; `way FILE` tells how long the way is that a file makes, for whoever doubts that both sides did the same.
 
 mod board;
 mod compare;
@@ -54,6 +55,7 @@ fn main() -> ExitCode {
         ["lex", file] => lex(Path::new(file)),
         ["tree", file] => tree(Path::new(file)),
         ["interpret", file] => interpret(Path::new(file)).map(drop),
+        ["way", file] => way(Path::new(file)),
         ["listing", file] => listing(Path::new(file)),
         ["cycles"] => compare::cycles(3, &mut Board::default()),
         ["work", name, count] => match count.parse() {
@@ -77,7 +79,7 @@ fn main() -> ExitCode {
         #[cfg(feature = "peers")]
         ["gcode", file] => words::read(Path::new(file)),
         _ => {
-            Err("usage: table [BLOCKS] | compare [BLOCKS] | cycles | removal | motion [TICKS] | planner | generate DIR [BLOCKS] | lex|tree|interpret|listing FILE"
+            Err("usage: table [BLOCKS] | compare [BLOCKS] | cycles | removal | motion [TICKS] | planner | generate DIR [BLOCKS] | lex|tree|interpret|way|listing FILE"
                 .to_string())
         }
     };
@@ -171,38 +173,55 @@ fn interpreter(path: &Path) -> Result<(Interpreter, Texts), String> {
     Ok((interpreter, Texts(file)))
 }
 
-/// Interprets a file and adds up what came out: the number of moves, and the length of their way, which shows that
-/// both sides made the same ones.
+/// Interprets a file; the number of moves. Their end points are added up, so that nothing of them can be left out.
 fn interpret(path: &Path) -> Result<u64, String> {
-    let (mut interpreter, mut texts) = interpreter(path)?;
+    let (mut moves, mut sum_nm) = (0u64, 0i64);
+    each_move(path, |to, _| {
+        moves += 1;
+        sum_nm = sum_nm.wrapping_add(to.x.0.nm()).wrapping_add(to.z.nm());
+    })?;
+    println!("{moves} moves, check sum {sum_nm}");
+    Ok(moves)
+}
+
+/// Interprets a file and tells the length of the way, which shows that both sides made the same moves.
+fn way(path: &Path) -> Result<(), String> {
     let in_nm = |place: Position<WorkTip>| Point::new(place.x.0.to_nm_float(), place.z.to_nm_float());
-    let mut from = in_nm(interpreter.position());
-    let (mut moves, mut length_nm) = (0u64, 0.0f64);
+    let (mut moves, mut length_nm, mut from) = (0u64, 0.0f64, None);
+    each_move(path, |to, action| {
+        let to = in_nm(to);
+        if let Some(from) = from.replace(to) {
+            length_nm += match action {
+                Action::Feed { shape: Shape::Arc { turn, centre }, .. } => {
+                    let centre = in_nm(*centre);
+                    let clockwise = *turn == turnwright_canon::Turn::Clockwise;
+                    sweep_rad(from, to, centre, clockwise).abs() * centre.distance(from)
+                }
+                _ => from.distance(to),
+            };
+        }
+        moves += 1;
+    })?;
+    println!("{moves} moves, {:.4} mm", length_nm / 1e6);
+    Ok(())
+}
+
+/// Interprets a file and shows every move with its end.
+#[inline(always)]
+fn each_move(path: &Path, mut show: impl FnMut(Position<WorkTip>, &Action)) -> Result<(), String> {
+    let (mut interpreter, mut texts) = interpreter(path)?;
     loop {
         match interpreter.step(&mut texts) {
             Step::Emit(command) => {
-                let Some(to) = command.action.end_point().map(in_nm) else { continue };
-                if moves > 0 {
-                    length_nm += match command.action {
-                        Action::Feed { shape: Shape::Arc { turn, centre }, .. } => {
-                            let centre = in_nm(centre);
-                            let clockwise = turn == turnwright_canon::Turn::Clockwise;
-                            sweep_rad(from, to, centre, clockwise).abs() * centre.distance(from)
-                        }
-                        // `hypot` would cost more than it tells here.
-                        _ => ((from.x - to.x).powi(2) + (from.z - to.z).powi(2)).sqrt(),
-                    };
+                if let Some(to) = command.action.end_point() {
+                    show(to, &command.action);
                 }
-                moves += 1;
-                from = to;
             }
             Step::NeedSync(_) => {}
             Step::Alarm(alarm) => return Err(format!("alarm {} at {:?}", alarm.key, alarm.place)),
-            Step::End => break,
+            Step::End => return Ok(()),
         }
     }
-    println!("{moves} moves, {:.4} mm", length_nm / 1e6);
-    Ok(moves)
 }
 
 /// Interprets a file and writes the trace to nowhere.

@@ -504,16 +504,21 @@ impl Interpreter {
 
     #[inline(always)]
     fn emit(&mut self, command: Command) -> Step {
+        self.note_move();
+        Step::Emit(command)
+    }
+
+    /// A move is given out: the program does something, and its moves are not over.
+    #[inline(always)]
+    fn note_move(&mut self) {
         self.core.idle_blocks = 0;
         self.core.moves_done = false;
-        Step::Emit(command)
     }
 
     #[inline(always)]
     fn next_cycle_move(&mut self) -> Option<Command> {
         let command = self.core.next_cycle_move()?;
-        self.core.idle_blocks = 0;
-        self.core.moves_done = false;
+        self.note_move();
         Some(command)
     }
 
