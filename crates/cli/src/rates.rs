@@ -2,8 +2,8 @@
 
 use turnwright_control::{Machine, Parameters};
 use turnwright_motion::{
-    AccDec, Arrival, AuxiliaryTimes, AxisDynamics, Dynamics, Gear, GearSelection, Gears, MachineRates,
-    Orientation, PanelRules, RapidSurfaceSpeed, SpeedWait,
+    AccDec, Arrival, AuxiliaryTimes, AxisDynamics, Dynamics, Fluctuation, Gear, GearSelection, Gears,
+    MachineRates, Orientation, PanelRules, RapidSurfaceSpeed, SpeedWait,
 };
 use turnwright_units::Rpm;
 
@@ -40,6 +40,7 @@ pub(crate) fn rates(machine: &Machine, parameters: &Parameters, stops_optionally
         },
         gears: gears(machine),
         holds_tapping: parameters.bit("rigid-tap-feed-hold"),
+        fluctuation: Fluctuation { part: machine.fluctuation_percent / 100.0, hz: machine.fluctuation_hz },
         orientation: machine.orientation_m.map(|code| Orientation { code, seconds: machine.orientation_s }),
         stop_s: machine.stop_s,
         optional_stop_s: if stops_optionally { machine.stop_s } else { 0.0 },
@@ -91,9 +92,11 @@ fn dynamics(machine: &Machine) -> Dynamics {
     let b = axes.b.as_ref().map_or(usual_b, |b| axis(b.acceleration_deg_per_s2, b.jerk_deg_per_s3));
     // A virtual axis is made by X and the rotary axis: it is taken to be no quicker than X.
     let acc_dec = match machine.acc_dec {
-        turnwright_control::AccDec::Before => AccDec::Before,
+        // What parameters leave open keeps the path.
+        turnwright_control::AccDec::Before | turnwright_control::AccDec::ByParameter => AccDec::Before,
         turnwright_control::AccDec::After => AccDec::After,
     };
     let (corner_s, in_position_s) = (machine.corner_s, machine.in_position_s);
-    Dynamics { acc_dec, axes: [x, z, y, c, b, x], corner_s, in_position_s }
+    let cutting_mm_per_s2 = machine.acceleration_cutting_mm_per_s2.unwrap_or(f64::INFINITY);
+    Dynamics { acc_dec, axes: [x, z, y, c, b, x], cutting_mm_per_s2, corner_s, in_position_s }
 }

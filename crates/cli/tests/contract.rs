@@ -721,6 +721,26 @@ fn a_spindle_that_cannot_have_its_speed_in_the_time_of_g26_is_an_alarm() {
 }
 
 #[test]
+fn the_watch_judges_a_spindle_that_wobbles() {
+    let folder = Folder::new();
+    // Q 15 % counts as reached, R 5 % is permitted from then on, 50 rpm at least.
+    let text = "O1\nG97 S2000 M03\nG04 X3.\nG26 P3000 Q15 R5 I50\nS1000\nS500\nM05\nM30\n";
+    let program = folder.file("wobble.nc", text);
+    let run = |percent: &str| {
+        let text = format!("control = \"fanuc-0i-tf\"\n[rates]\nfluctuation_percent = {percent}\n");
+        turnwright(&["run", &program, "--setup", &folder.file("wobble.toml", text)])
+    };
+    // 5 % of 2000 are 100 rpm; of 500 the band of 50 rpm counts.
+    let fine = run("5.0");
+    assert!(fine.status == 0 && !fine.err.contains("OH0704"), "{}", fine.err);
+    let ran = run("5.1");
+    assert!(ran.status == 1 && ran.err.contains("The spindle turns 1898 rpm where 2000"), "{}", ran.err);
+    assert!(ran.err.contains("wobble.nc:4:1"), "{}", ran.err);
+    let wrong = run("60");
+    assert!(wrong.status == 2 && wrong.err.contains("fluctuation_percent"), "{}", wrong.err);
+}
+
+#[test]
 fn check_and_time_tell_what_the_clock_shows_as_run_does() {
     let folder = Folder::new();
     let setup = folder.file("clock.toml", "control = \"fanuc-0i-tf\"\n");

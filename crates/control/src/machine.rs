@@ -24,6 +24,9 @@ pub struct Machine {
     /// Where cutting moves get their acceleration.
     #[serde(default)]
     pub acc_dec: AccDec,
+    /// No cut speeds up faster along its path; left out: what the axes can do.
+    #[serde(default)]
+    pub acceleration_cutting_mm_per_s2: Option<f64>,
     pub in_position_s: f64,
     pub tool_change_s: f64,
     pub spindle_ramp_rpm_per_s: f64,
@@ -46,6 +49,12 @@ pub struct Machine {
     /// The spindle turns no faster while it changes.
     #[serde(default)]
     pub gear_change_rpm: u32,
+    /// By how much the speed of the spindle swings to either side, % of it.
+    #[serde(default)]
+    pub fluctuation_percent: f64,
+    /// How often it swings.
+    #[serde(default = "swings_per_s")]
+    pub fluctuation_hz: f64,
     /// The M code that stops the spindle at an angle.
     #[serde(default)]
     pub orientation_m: Option<u32>,
@@ -74,8 +83,11 @@ pub struct Machine {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum AccDec {
-    /// Before interpolation: the path is kept.
+    /// As the control's parameters say: before interpolation where they give an acceleration for that, after it where
+    /// they give a time constant of cuts and nothing else, and before it where they give nothing.
     #[default]
+    ByParameter,
+    /// Before interpolation: the path is kept.
     Before,
     /// After interpolation: each axis comes behind, corners are cut short.
     After,
@@ -158,6 +170,10 @@ pub struct LinearAxis {
     /// Its reference point, mm.
     #[serde(default)]
     pub reference_mm: f64,
+}
+
+fn swings_per_s() -> f64 {
+    5.0
 }
 
 fn full_turn() -> f64 {
@@ -271,8 +287,23 @@ impl Machine {
         }
         // Each axis is averaged twice: half of the time constant each. One time holds for the path.
         let of_cuts = Axis::TURNING.into_iter().filter_map(|axis| of_axis("cutting-time-constant", axis));
-        if let Some(ms) = of_cuts.reduce(f64::max) {
+        let time_constant_ms = of_cuts.reduce(f64::max);
+        if let Some(ms) = time_constant_ms {
             self.corner_s = (ms / 2e3).min(1.0);
+        }
+        // The acceleration before interpolation: of each axis, or as a speed and the time in which it is reached.
+        let of_axes =
+            Axis::TURNING.into_iter().filter_map(|axis| of_axis("acceleration-before-interpolation", axis));
+        let of_ramp = set("speed-before-interpolation")
+            .zip(set("time-before-interpolation"))
+            .map(|(mm_per_min, ms)| mm_per_min / 60.0 / (ms / 1e3));
+        let before_mm_per_s2 = of_axes.reduce(f64::min).or(of_ramp);
+        if let Some(acceleration) = before_mm_per_s2 {
+            self.acceleration_cutting_mm_per_s2 = Some(acceleration);
+        }
+        if self.acc_dec == AccDec::ByParameter {
+            let is_after = before_mm_per_s2.is_none() && time_constant_ms.is_some();
+            self.acc_dec = if is_after { AccDec::After } else { AccDec::Before };
         }
         if let Some(feed) = set("cutting-feed-maximum") {
             self.cutting_max_mm_per_min = feed;

@@ -535,6 +535,7 @@ impl Setup {
             machine.cutting_max_mm_per_min,
             machine.spindle_ramp_rpm_per_s,
             machine.acceleration_x_mm_per_s2,
+            machine.acceleration_cutting_mm_per_s2.unwrap_or(1.0),
             machine.acceleration_z_mm_per_s2,
             machine.jerk_x_mm_per_s3,
             machine.jerk_z_mm_per_s3,
@@ -545,6 +546,12 @@ impl Setup {
         }
         if machine.corner_s > 1.0 || !(0.0..=60.0).contains(&machine.in_position_s) {
             let message = "corner_s is at most 1, in_position_s from 0 to 60".to_string();
+            return Err(SetupFault { message, line: 0 });
+        }
+        if !(0.0..=50.0).contains(&machine.fluctuation_percent)
+            || !(0.01..=200.0).contains(&machine.fluctuation_hz)
+        {
+            let message = "fluctuation_percent is 0 to 50, fluctuation_hz 0.01 to 200".to_string();
             return Err(SetupFault { message, line: 0 });
         }
         if let Some(message) = machine.time_fault() {
@@ -578,6 +585,7 @@ fn change_axes(of_machine: &mut toml::Value, of_setup: &toml::Table) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::AccDec;
 
     #[test]
     fn unknown_keys_are_errors_with_a_line() {
@@ -656,5 +664,38 @@ mod tests {
             let setup = Setup { machine: Some(name.to_string()), ..Setup::default() };
             setup.machine().expect(name);
         }
+    }
+
+    #[test]
+    fn parameters_choose_where_cuts_get_their_acceleration() {
+        let machine = |control: &str, rates: &str, set: &[(&str, &str)]| {
+            let mut parameters = crate::Control::load(control).expect("control").parameters;
+            for (number, value) in set {
+                parameters.set(number, value).expect(number);
+            }
+            let setup = Setup::parse(&format!("[rates]\n{rates}")).expect("setup");
+            let machine = setup.machine().expect("machine").limited_by(&parameters);
+            (machine.acc_dec, machine.acceleration_cutting_mm_per_s2)
+        };
+        let (tb, tf, ta) = ("fanuc-0i-tc", "fanuc-0i-tf", "gsk-988ta");
+        assert_eq!(machine(tf, "", &[]), (AccDec::Before, None));
+        for control in [tb, tf, ta] {
+            assert_eq!(machine(control, "", &[("1622.X", "64")]), (AccDec::After, None));
+        }
+        let both = [("1622.X", "64"), ("1660.X", "800"), ("1660.Z", "600")];
+        assert_eq!(machine(tf, "", &both), (AccDec::Before, Some(600.0)));
+        // 6000 mm/min in 200 ms; one of the two alone is none.
+        assert_eq!(machine(tb, "", &[("1770", "6000"), ("1771", "200")]), (AccDec::Before, Some(500.0)));
+        assert_eq!(machine(tb, "", &[("1770", "6000"), ("1622.Z", "32")]), (AccDec::After, None));
+        // The machine file overrules where, the parameter how much.
+        assert_eq!(machine(tf, "acc_dec = \"after\"", &both), (AccDec::After, Some(600.0)));
+        assert_eq!(machine(tf, "acc_dec = \"before\"", &[("1622.X", "64")]), (AccDec::Before, None));
+        let given = "acceleration_cutting_mm_per_s2 = 250";
+        assert_eq!(machine(tf, given, &[]), (AccDec::Before, Some(250.0)));
+        for wrong in ["fluctuation_percent = 51", "fluctuation_percent = -1", "fluctuation_hz = 0"] {
+            assert!(Setup::parse(&format!("[rates]\n{wrong}")).expect("setup").machine().is_err(), "{wrong}");
+        }
+        let none = Setup::parse("[rates]\nacceleration_cutting_mm_per_s2 = 0").expect("setup");
+        assert!(none.machine().is_err());
     }
 }

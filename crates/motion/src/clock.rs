@@ -265,13 +265,22 @@ impl Clock {
         let shifting_s = self.shift.map_or(0.0, |shift| shift.seconds);
         let mut then = self.spindle;
         then.run((f64::from(watch.delay_ms) / 1e3 - shifting_s).max(0.0));
-        self.judge(watch, self.spindle.target_rpm(), then.actual_rpm());
+        let ordered_rpm = self.spindle.target_rpm();
+        self.judge(watch, ordered_rpm, then.actual_rpm());
+        if self.rates.fluctuation.is_some() {
+            // Once it is reached, the speed goes on swinging, and only the permitted change counts.
+            self.judge(SpindleWatch { reached_permille: 0, ..watch }, ordered_rpm, ordered_rpm);
+        }
     }
 
     fn judge(&mut self, watch: SpindleWatch, ordered_rpm: f64, real_rpm: f64) {
         let permitted = f64::from(watch.reached_permille.max(watch.allowed_permille)) / 1000.0 * ordered_rpm;
         // Where nobody has said what is permitted, nothing can be wrong.
         let is_told = watch.allowed_permille > 0 || watch.band.0 > 0;
+        // An uneven spindle is as far off as it swings.
+        let swing_rpm =
+            if self.rates.fluctuation.is_some() { self.rates.fluctuation.part * real_rpm } else { 0.0 };
+        let real_rpm = if real_rpm > ordered_rpm { real_rpm + swing_rpm } else { real_rpm - swing_rpm };
         let off = (ordered_rpm - real_rpm).abs();
         if is_told && ordered_rpm > 0.0 && off > permitted.max(f64::from(watch.band.0)) + RPM_NEAR {
             let (source, line) = self.watched_at;
@@ -355,6 +364,10 @@ impl Clock {
             }
             Action::SpindleWatch(watch) => {
                 self.watch = *watch;
+                if self.rates.fluctuation.is_some() {
+                    self.watched_at = (command.origin.source, command.origin.line);
+                    self.watch_order();
+                }
                 self.still(Kind::Other, 0.0)
             }
             Action::PathMode(mode) => {

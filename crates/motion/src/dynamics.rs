@@ -57,6 +57,8 @@ pub struct Dynamics {
     pub acc_dec: AccDec,
     /// X (as a radius), Z, Y, C, B, and the virtual axis of polar and cylindrical interpolation.
     pub axes: [AxisDynamics; AXIS_COUNT],
+    /// No cut speeds up faster along its path, mm/s²; infinite: what the axes can do.
+    pub cutting_mm_per_s2: f64,
     /// Seconds over which the axes change their speed at a corner of a cutting path: the longer, the faster corners
     /// are passed and the rounder they become.
     pub corner_s: f64,
@@ -72,6 +74,7 @@ impl Default for Dynamics {
         Self {
             acc_dec: AccDec::Before,
             axes: [slide, slide, axis(2_000.0, 100_000.0), rotary, axis(1_000.0, 20_000.0), slide],
+            cutting_mm_per_s2: f64::INFINITY,
             corner_s: 0.01,
             in_position_s: 0.02,
         }
@@ -101,6 +104,9 @@ impl Dynamics {
         let is_sound = |axis: &AxisDynamics| positive(axis.acceleration_per_s2) && positive(axis.jerk_per_s3);
         if !self.axes.iter().all(is_sound) {
             return Some("acceleration");
+        }
+        if self.cutting_mm_per_s2.is_nan() || self.cutting_mm_per_s2 <= 0.0 {
+            return Some("acceleration_cutting_mm_per_s2");
         }
         if !positive(self.corner_s) || self.corner_s > CORNER_S_MAX {
             return Some("corner_s");
@@ -139,7 +145,8 @@ impl Dynamics {
         let least =
             |of: fn(&AxisDynamics) -> f64| self.axes[..count].iter().map(of).fold(f64::INFINITY, f64::min);
         RunLimits {
-            acceleration_mm_per_s2: ALONG * least(|axis| axis.acceleration_per_s2),
+            acceleration_mm_per_s2: (ALONG * least(|axis| axis.acceleration_per_s2))
+                .min(self.cutting_mm_per_s2),
             jerk_mm_per_s3: JERK_ALONG * least(|axis| axis.jerk_per_s3),
         }
     }

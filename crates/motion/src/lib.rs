@@ -50,7 +50,7 @@ pub use player::{Player, Sample};
 pub use rates::{Arrival, AuxiliaryTimes, MachineRates, Orientation, RapidSurfaceSpeed, SpeedWait};
 pub use run::LEGS_MAX;
 pub use schedule::Schedule;
-pub use spindle::RPM_FENCE;
+pub use spindle::{Fluctuation, RPM_FENCE};
 pub use summary::{Extents, OPERATIONS_MAX, Operation, OperationKind, Summary};
 pub use thread::{ThreadFault, ThreadNeed, ThreadPlan, ThreadStretch, lead_in_needed_mm, run_out_needed_mm};
 pub use totals::{Kind, Totals};

@@ -294,13 +294,18 @@ impl Player {
         };
         match self.led {
             Some(angle) => self.spindle = angle,
-            None => self.spindle.turn(rpm, ramp_rpm_per_s, 1.0 / self.rate_hz),
+            None => {
+                let turning_s = self.turning_s(time_s - 1.0 / self.rate_hz, time_s);
+                self.spindle.turn(rpm, ramp_rpm_per_s, 1.0 / self.rate_hz, turning_s);
+            }
         }
+        // Led by a tap it turns as that goes.
+        let swing = if self.led.is_some() { 1.0 } else { self.clock.rates().fluctuation.at(time_s) };
         sink(&Sample {
             time_s,
             place,
             path_mm_per_s,
-            rpm: self.spindle.rpm,
+            rpm: self.spindle.rpm * swing,
             turns: self.spindle.turns,
             kind,
             source: block.source,
@@ -558,8 +563,9 @@ impl Player {
         match ThreadPlan::new(&chain.stretches, chain.rpm) {
             Ok(plan) => {
                 let per_second = self.spindle.rpm.abs() / 60.0;
-                let next_turns =
-                    |player: &Self| player.spindle.turns + (player.next_s() - player.last_s()) * per_second;
+                let next_turns = |player: &Self| {
+                    player.spindle.turns + player.turning_s(player.last_s(), player.next_s()) * per_second
+                };
                 // The next time that the spindle comes to the start.
                 let start = chain.start_turns - plan.advance();
                 let begin = start + (next_turns(self) - start).ceil();
@@ -586,6 +592,11 @@ impl Player {
         self.smoother.stand(&self.clock.place());
         let ends_here = self.clock.rates().panel_rules.thread_hold == ThreadHold::AtEnd && !chain.runs_on;
         self.is_hold_deferred = self.panel.is_held && !ends_here;
+    }
+
+    /// In so many seconds an even spindle turns as far as this one.
+    fn turning_s(&self, from_s: f64, to_s: f64) -> f64 {
+        self.clock.rates().fluctuation.seconds(from_s, to_s)
     }
 
     /// When the last sample was.

@@ -2,7 +2,7 @@
 
 use turnwright_units::Rpm;
 
-use crate::{Dynamics, Gears, Panel, PanelRules};
+use crate::{Dynamics, Fluctuation, Gears, Panel, PanelRules};
 
 /// Which speed constant surface speed asks for during a rapid move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -125,6 +125,8 @@ pub struct MachineRates {
     pub holds_tapping: bool,
     /// The function that stops the spindle at an angle, if the machine has one.
     pub orientation: Option<Orientation>,
+    /// How unevenly the spindle turns.
+    pub fluctuation: Fluctuation,
     /// The spindle turns no faster.
     pub rpm_max: Option<Rpm>,
     /// The spindle turns no slower while it follows the diameter, rpm.
@@ -162,6 +164,7 @@ impl Default for MachineRates {
             gears: Gears::default(),
             holds_tapping: false,
             orientation: None,
+            fluctuation: Fluctuation::default(),
             rpm_max: Some(Rpm(4_000)),
             rpm_min_surface: 20,
             rapid_surface_speed: RapidSurfaceSpeed::AtEndPoint,
@@ -190,6 +193,7 @@ impl MachineRates {
             ("tool_change_s", not_negative(self.tool_change_s)),
             ("spindle_ramp_rpm_per_s", not_negative(self.spindle_ramp_rpm_per_s)),
             ("gears", self.gears.are_sound()),
+            ("fluctuation", self.fluctuation.is_sound()),
             ("arrival", not_negative(self.arrival.delay_s)),
             ("auxiliary_s", not_negative(self.auxiliary_s)),
             ("auxiliary_times", self.auxiliary_times.times().all(|(_, seconds)| not_negative(seconds))),

@@ -1,5 +1,7 @@
 //! The spindle: what speed is asked for at a place, and how fast it really turns meanwhile.
 
+use std::f64::consts::TAU;
+
 use turnwright_canon::{SpindleSpeed, SpindleState};
 use turnwright_units::Rpm;
 
@@ -68,13 +70,50 @@ pub(crate) struct SpindleAngle {
 }
 
 impl SpindleAngle {
-    /// Turns for a while towards a speed.
-    pub(crate) fn turn(&mut self, rpm: f64, ramp_rpm_per_s: f64, seconds: f64) {
+    /// Turns for a while towards a speed, as unevenly as it does; `seconds` are those of turning, which is shorter or
+    /// longer than the clock's.
+    pub(crate) fn turn(&mut self, rpm: f64, ramp_rpm_per_s: f64, seconds: f64, turning_s: f64) {
         let before = self.rpm;
         let change = ramp_rpm_per_s * seconds;
         let is_near = ramp_rpm_per_s == 0.0 || (rpm - before).abs() <= change;
         self.rpm = if is_near { rpm } else { before + change.copysign(rpm - before) };
-        self.turns += (before + self.rpm).abs() / 2.0 / 60.0 * seconds;
+        self.turns += (before + self.rpm).abs() / 2.0 / 60.0 * turning_s;
+    }
+}
+
+/// How unevenly a spindle turns: its speed swings about the one asked for as a sine.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fluctuation {
+    /// To either side, as a part of the speed.
+    pub part: f64,
+    /// Swings a second.
+    pub hz: f64,
+}
+
+impl Fluctuation {
+    /// Whether a spindle can turn so.
+    pub(crate) fn is_sound(&self) -> bool {
+        (0.0..1.0).contains(&self.part) && self.hz.is_finite() && self.hz >= 0.0
+    }
+
+    /// Whether there is any.
+    pub(crate) fn is_some(&self) -> bool {
+        self.part > 0.0 && self.hz > 0.0 && self.is_sound()
+    }
+
+    /// The speed at a time as a part of the even one.
+    pub(crate) fn at(&self, time_s: f64) -> f64 {
+        if self.is_some() { 1.0 + self.part * libm::sin(TAU * self.hz * time_s) } else { 1.0 }
+    }
+
+    /// In so many seconds an even spindle turns as far as this one between two times.
+    pub(crate) fn seconds(&self, from_s: f64, to_s: f64) -> f64 {
+        let even = to_s - from_s;
+        if !self.is_some() {
+            return even;
+        }
+        let swing = TAU * self.hz;
+        even + self.part / swing * (libm::cos(swing * from_s) - libm::cos(swing * to_s))
     }
 }
 

@@ -8,9 +8,9 @@ use turnwright_canon::{
     SpindleSpeed, SpindleState, Turn,
 };
 use turnwright_motion::{
-    ArcPath, Arrival, AuxiliaryTimes, BlockTime, BlockTimes, Clock, Dynamics, Gear, GearSelection, Gears,
-    Kind, LINES_MAX, MachineRates, Orientation, Panel, PanelRules, RapidOverride, RapidSurfaceSpeed,
-    SPIRAL_TOLERANCE, Schedule, SpeedWait, Summary, TIME_TOLERANCE, Timing,
+    ArcPath, Arrival, AuxiliaryTimes, BlockTime, BlockTimes, Clock, Dynamics, Fluctuation, Gear,
+    GearSelection, Gears, Kind, LINES_MAX, MachineRates, Orientation, Panel, PanelRules, RapidOverride,
+    RapidSurfaceSpeed, SPIRAL_TOLERANCE, Schedule, SpeedWait, Summary, TIME_TOLERANCE, Timing,
 };
 use turnwright_units::{
     Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position, Radius, Revolutions, Rpm, Seconds,
@@ -383,6 +383,7 @@ fn nothing_makes_a_time_that_is_no_number() {
             arrival: Arrival { before_cut: round % 2 == 0, before_thread: round % 5 == 0, delay_s: rate() },
             gears: gears(&mut rate, round),
             holds_tapping: false,
+            fluctuation: Fluctuation { part: rate(), hz: rate() },
             orientation: Some(Orientation { code: 10, seconds: rate() }).filter(|_| round % 3 == 0),
             rpm_max: None,
             rpm_min_surface: 0,

@@ -114,3 +114,21 @@ fn an_orientation_stops_the_spindle_and_turns_it_to_its_angle() {
     let plain = timed(MachineRates::default(), &[spindle(1500), Action::Auxiliary { code: 19 }]);
     assert_eq!((plain[1].kind, plain[1].seconds), (Kind::Other, 0.2));
 }
+
+#[test]
+fn cuts_speed_up_no_faster_than_the_control_lets_them() {
+    let one = [feed(at(10.0, 0.0), Shape::Line)];
+    let seconds = |cutting_mm_per_s2: f64| {
+        let dynamics = Dynamics { cutting_mm_per_s2, ..Dynamics::default() };
+        let rates = MachineRates { dynamics: Some(dynamics), ..MachineRates::default() };
+        let mut schedule = Schedule::new(at(50.0, 0.0), rates);
+        one.iter().for_each(|action| schedule.push(Command::new(action.clone(), Origin::line(1))));
+        schedule.finish();
+        schedule.next_known().map_or(0.0, |(_, timing)| timing.seconds)
+    };
+    // 40 mm at 100 mm/s from rest to rest: v/a and a/j more; the machine's own share is 750 mm/s².
+    let expected = |a: f64| 0.4 + 100.0 / a + a / 45_000.0 + 0.02;
+    for (limit, acceleration) in [(f64::INFINITY, 750.0), (2000.0, 750.0), (500.0, 500.0)] {
+        assert!((seconds(limit) - expected(acceleration)).abs() < 1e-9, "{limit}");
+    }
+}
