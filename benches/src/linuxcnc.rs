@@ -8,8 +8,8 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use turnwright_canon::{Action, Command as Order, Origin, Shape};
-use turnwright_motion::{Dynamics, MachineRates, Player, Sample, Schedule};
+use turnwright_canon::{Action, Command as Order, Origin, RapidPath, Shape};
+use turnwright_motion::{Dynamics, Kind, MachineRates, Player, Sample, Schedule};
 use turnwright_units::{Feed, FeedPerMinute, Length, Position, Radius, WorkTip};
 
 use crate::board::Board;
@@ -137,29 +137,32 @@ fn off(path: &[Place], places: &[Place]) -> f64 {
     most
 }
 
-/// The schedule's cost of a line, the player's of a tick, and what that one keeps.
-fn ours(path: &[Place], mm_per_min: f64, jerk_per_s3: f64) -> (Cost, Kept) {
+/// Seconds of the cuts whose time is known by now.
+fn cutting_s(schedule: &mut Schedule) -> f64 {
+    let known = std::iter::from_fn(|| schedule.next_known());
+    known.filter(|(_, timing)| timing.kind == Kind::Cutting).map(|(_, timing)| timing.seconds).sum()
+}
+
+/// The schedule's cost of a line, the player's of a tick, and where that one was.
+fn ours(path: &[Place], mm_per_min: f64, jerk_per_s3: f64) -> (Cost, Vec<Place>) {
     let given = commands(path, mm_per_min);
     let (start, rates) = (at(path[0]), rates(jerk_per_s3));
-    // The counter moves in steps of some milliseconds.
-    let copies = vec![given.clone(); REPEATS];
+    // The counter moves in steps of some milliseconds, so that the path is gone again and again.
+    let back = Action::Rapid { to: start, path: RapidPath::Straight, others: None };
+    let back = Order::new(back, Origin::line(0));
+    let commands: Vec<Order> =
+        (0..REPEATS).flat_map(|_| given.iter().cloned().chain([back.clone()])).collect();
+    let mut schedule = Schedule::new(start, rates);
     let mut machine_s = 0.0;
     let watch = Stopwatch::start();
-    for commands in copies {
-        let mut schedule = Schedule::new(start, rates);
-        machine_s = 0.0;
-        for command in commands {
-            schedule.push(command);
-            while let Some((_, timing)) = schedule.next_known() {
-                machine_s += timing.seconds;
-            }
-        }
-        schedule.finish();
-        while let Some((_, timing)) = schedule.next_known() {
-            machine_s += timing.seconds;
-        }
+    for command in commands {
+        schedule.push(command);
+        machine_s += cutting_s(&mut schedule);
     }
+    schedule.finish();
+    machine_s += cutting_s(&mut schedule);
     let line_ns = watch.seconds() * 1e9 / (COUNT * REPEATS) as f64;
+    machine_s /= REPEATS as f64;
     let mut played = Vec::with_capacity((machine_s * 1000.0) as usize + 100);
     let (watch, mut ticks) = (Stopwatch::start(), 0);
     while ticks < TICKS_MIN {
@@ -173,7 +176,7 @@ fn ours(path: &[Place], mm_per_min: f64, jerk_per_s3: f64) -> (Cost, Kept) {
         ticks += played.len();
     }
     let tick_ns = watch.seconds() * 1e9 / ticks as f64;
-    (Cost { line_ns, tick_ns, machine_s }, Kept::of(path, &played))
+    (Cost { line_ns, tick_ns, machine_s }, played)
 }
 
 /// Their planner.
@@ -220,12 +223,10 @@ impl Peer {
         }
     }
 
-    fn keeps(&self, path: &[Place], mm_per_min: f64) -> Result<Kept, String> {
+    fn plays(&self, path: &[Place], mm_per_min: f64) -> Result<Vec<Place>, String> {
         let said = self.says(path, mm_per_min, &["places"])?;
         // The costs come last.
-        let played: Vec<Place> =
-            said[..said.len() - 3].chunks_exact(2).map(|place| (place[0], place[1])).collect();
-        Ok(Kept::of(path, &played))
+        Ok(said[..said.len() - 3].chunks_exact(2).map(|place| (place[0], place[1])).collect())
     }
 
     /// The numbers that the program prints.
@@ -300,8 +301,8 @@ fn measure(row: &Row, peer: Option<&Peer>, board: &mut Board) -> Result<(), Stri
     let jerk_per_s3 = Dynamics::default().axes[0].jerk_per_s3;
     let (mut lines, mut ticks, mut times) = (Vec::new(), Vec::new(), None);
     for round in 0..ROUNDS {
-        let (mine, kept) = ours(path, *mm_per_min, jerk_per_s3);
-        let (free, free_kept) = ours(path, *mm_per_min, FREE_JERK);
+        let (mine, played) = ours(path, *mm_per_min, jerk_per_s3);
+        let (free, freely_played) = ours(path, *mm_per_min, FREE_JERK);
         let theirs = peer.map(|peer| peer.run(path, *mm_per_min)).transpose()?;
         if let Some(theirs) = &theirs {
             lines.push(theirs.line_ns / mine.line_ns);
@@ -311,7 +312,8 @@ fn measure(row: &Row, peer: Option<&Peer>, board: &mut Board) -> Result<(), Stri
         if round + 1 < ROUNDS {
             continue;
         }
-        let show = |who: &str, cost: &Cost, kept: &Kept| {
+        let show = |who: &str, cost: &Cost, played: &[Place]| {
+            let kept = Kept::of(path, played);
             println!(
                 "{name:6} F{mm_per_min:<4} {who:15} {:5.0} ns a line, {:4.0} ns a tick, {:8.3} s of machine time; {:.1} µm off the path, {:.2} x the acceleration",
                 cost.line_ns,
@@ -321,10 +323,10 @@ fn measure(row: &Row, peer: Option<&Peer>, board: &mut Board) -> Result<(), Stri
                 kept.acceleration / ACCELERATION
             );
         };
-        show("ours", &mine, &kept);
-        show("ours, free jerk", &free, &free_kept);
+        show("ours", &mine, &played);
+        show("ours, free jerk", &free, &freely_played);
         if let (Some(theirs), Some(peer)) = (&theirs, peer) {
-            show("LinuxCNC", theirs, &peer.keeps(path, *mm_per_min)?);
+            show("LinuxCNC", theirs, &peer.plays(path, *mm_per_min)?);
         }
     }
     let Some([free, limited]) = times else { return Ok(()) };
