@@ -197,6 +197,10 @@ test("a crash is marked in the picture, and its mark leads to the finding", asyn
   assert.ok(before > 200, "marks are drawn at the end too");
   await finding.locator(".link", { hasText: "show the place" }).click();
   assert.equal(await page.evaluate(() => turnwright.currentLine), 20);
+  // From close by: what is hit, 10 mm wide, takes a good part of the view.
+  const [left, right] = await page.evaluate(() => turnwright.pixelsOfZ(-30, -40));
+  assert.ok(Math.abs(right - left) > 120, `${right - left}`);
+  await page.click("#fit");
   const index = await page.locator("#diagnostics .found")
     .evaluateAll((all) => all.findIndex((one) => one.textContent.includes("T350")));
   await page.keyboard.press("End");

@@ -21,11 +21,13 @@ pub(crate) struct Finding {
     pub(crate) diagnostic: Box<Diagnostic>,
     /// More about this one case: the nearest name, the words of the system.
     pub(crate) hint: Option<String>,
+    /// The file that shows it.
+    pub(crate) picture: Option<String>,
     /// The numbers of the control that was in use.
     ids: AlarmIds,
     is_failure: bool,
     /// Where it is, looked up already.
-    located: Option<Spot>,
+    located: Option<Box<Spot>>,
 }
 
 impl Finding {
@@ -35,6 +37,7 @@ impl Finding {
             file: file.into(),
             diagnostic: Box::new(diagnostic),
             hint: None,
+            picture: None,
             ids: AlarmIds::Four,
             is_failure: false,
             located: None,
@@ -61,7 +64,7 @@ impl Finding {
 
     /// The same, its place looked up in its text.
     pub(crate) fn located(mut self, text: &ProgramText) -> Self {
-        self.located = self.spot(Some(text));
+        self.located = self.spot(Some(text)).map(Box::new);
         self
     }
 
@@ -92,7 +95,7 @@ impl Finding {
     /// Where it is, as people count; `None` when it is about the file as a whole.
     pub(crate) fn spot(&self, text: Option<&ProgramText>) -> Option<Spot> {
         let place = self.diagnostic.place.as_ref()?;
-        Some(self.located.clone().unwrap_or_else(|| Spot::new(place, text)))
+        Some(self.located.as_deref().cloned().unwrap_or_else(|| Spot::new(place, text)))
     }
 
     /// One line of JSON, with the fields of the contract in their order.
@@ -104,8 +107,10 @@ impl Finding {
 
     /// The same as a value.
     pub(crate) fn to_json(&self, messages: Messages, language: Language, spot: Option<&Spot>) -> Value {
+        let picture = self.picture.as_ref().map(|file| ("picture", json!(file)));
         self.json_fields(messages, language, spot)
             .into_iter()
+            .chain(picture)
             .map(|(name, value)| (name.to_string(), value))
             .collect()
     }

@@ -72,7 +72,7 @@ pub(crate) fn machined(
         });
     }
     if measure.as_ref().is_some_and(|measure| measure.path.is_some()) {
-        run = run.map(PartRun::with_history);
+        run = run.map(PartRun::with_history).map(PartRun::with_scenes);
     }
     while let Some(command) = execution.next_command() {
         let removed = run.as_mut().map(|run| run.add(&command));

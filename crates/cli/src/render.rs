@@ -132,6 +132,9 @@ impl Printer {
         if let Some(hint) = &finding.hint {
             notes.push(("label-hint", clean(hint)));
         }
+        if let Some(picture) = &finding.picture {
+            notes.push(("label-picture", clean(picture)));
+        }
         let group = notes.iter().filter(|(_, text)| !text.is_empty()).fold(group, |group, (label, text)| {
             group.element(Level::NOTE.with_name(speech.get(label)).message(text.as_str()))
         });

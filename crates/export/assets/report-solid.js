@@ -392,6 +392,12 @@ const solidView = (THREE, host, { model, typed, colours, onFault }) => {
   open(true);
   fit();
   return { show, open, fit, zoom, recolour, get isOpen() { return isOpen; }, get walls() { return wallCount; },
+    // What is to be said of threads: which text, or none.
+    get noteKey() {
+      if (wound?.shown) return "";
+      const hasThreads = model.sizes.rows.some(({ kind }) => kind.endsWith("thread"));
+      return model.wound ? "threads-later" : hasThreads ? "threads-rings" : "";
+    },
     get isWound() { return wound?.shown === true; },
     // For tests: how many pixels show something, drawn at once.
     painted() {

@@ -237,10 +237,9 @@
       section, fallen: model.fallenAt(step), tool, place: toolPosition(), pathShown,
       segments: step < steps ? path.first[step] : segments,
     });
-    const note = byId("solid-note"), hasThreads = model.sizes.rows.some(({ kind }) => kind.endsWith("thread"));
-    note.hidden = solid.isWound || !(model.wound || hasThreads);
-    note.dataset.text = model.wound ? "threads-later" : "threads-rings";
-    note.textContent = word(note.dataset.text);
+    const note = byId("solid-note");
+    note.hidden = !solid.noteKey;
+    if (solid.noteKey) note.textContent = word(note.dataset.text = solid.noteKey);
   };
   // In a long program the moves since the last moment are cut when the hand rests.
   let cutting = 0;
@@ -313,8 +312,10 @@
   const currentMove = () => (part > 0 || step === 0 ? step : step - 1);
   // Crashes and other findings that have a place in the section.
   const marks = run.diagnostics.flatMap((found, at) => (found.mark ? [{ ...found.mark, found, at }] : []));
+  // What is hit takes this share of the view then, which shows no less than this, mm.
+  const NEAR_SHARE = 0.22, NEAR_MM = 8;
   const markAt = (px, py) => marks.find(({ x, z }) => Math.hypot(toPxX(z) - px, toPxY(x) - py) <= 11);
-  const showMark = (mark) => {
+  const showMark = (mark, isNear = false) => {
     setPlaying(false);
     if (solidShown) setSolid(false);
     // On its way the tool is at the place.
@@ -330,6 +331,14 @@
     select(mark.found.line);
     linesLast = true;
     readout();
+    // From close by, as its picture of its own shows it; a click on the mark leaves the view as it is.
+    if (isNear) {
+      const [x0, z0, x1, z1] = mark.bounds ?? [mark.x, mark.z, mark.x, mark.z], { roomZ, roomX } = room();
+      const mmPerPx = Math.max((z1 - z0) / roomZ / NEAR_SHARE, (x1 - x0) / roomX / NEAR_SHARE, NEAR_MM / Math.min(roomZ, roomX));
+      Object.assign(view, { pxPerMm: 1 / mmPerPx, z: (z0 + z1) / 2, x: (x0 + x1) / 2 });
+      fitted = false;
+      return redraw();
+    }
     const px = toPxX(mark.z), py = toPxY(mark.x);
     if (px < LEFT + 20 || px > width - 60 || py < 20 || py > height - BOTTOM - 20) { view.z = mark.z; view.x = mark.x; fitted = false; redraw(); }
   };
@@ -354,11 +363,12 @@
   };
 
   // ---- the view ----------------------------------------------------------------------------------------
+  const room = () => ({ roomZ: Math.max(40, width - LEFT - CHUCK - 2 * PAD), roomX: Math.max(40, height - BOTTOM - 2 * PAD) });
   const fit = () => {
     if (solidShown) { solid.fit(); return; }
     let [x0, x1, z0, z1] = path.view;
     if (model) { z0 = Math.min(z0, model.bounds.z0); z1 = Math.max(z1, model.bounds.z1); x1 = Math.max(x1, model.bounds.x1); }
-    const roomZ = Math.max(40, width - LEFT - CHUCK - 2 * PAD), roomX = Math.max(40, height - BOTTOM - 2 * PAD);
+    const { roomZ, roomX } = room();
     view.pxPerMm = Math.min(roomZ / Math.max(z1 - z0, 0.1), roomX / Math.max(x1 - x0, 0.1));
     // The half below the axis too, as far as there is room.
     if (model) x0 = Math.min(x0, Math.max(-x1, x1 - roomX / view.pxPerMm));
@@ -651,7 +661,7 @@
   // ---- tables ------------------------------------------------------------------------------------------
   const lineButton = (text, from, to) => element("button", { type: "button", class: "link", onclick: () => { select(from, to); list.focus({ preventScroll: true }); document.querySelector("main").scrollIntoView({ block: "nearest" }); } }, text);
   const placeButton = (text, at) => element("button", { type: "button", class: "link", onclick: () => {
-    showMark(marks.find((mark) => mark.at === at));
+    showMark(marks.find((mark) => mark.at === at), true);
     document.querySelector("main").scrollIntoView({ block: "nearest" });
   } }, text);
   const makeTables = reportTables({ run, byId, element, word, inLanguage, number, seconds, lineButton, placeButton, SIGNS, kind, KINDS, LOOK, model, marks, hasSolid });
@@ -881,7 +891,7 @@
       const r = picture.getBoundingClientRect();
       return { finding: at, x: r.left + picture.clientLeft + toPxX(z), y: r.top + picture.clientTop + toPxY(x) };
     }),
-    get solid() { return solidShown ? { walls: solid.walls, painted: solid.painted(), isOpen: solid.isOpen, isWound: solid.isWound } : null; },
+    pixelsOfZ: (...all) => all.map(toPxX), get solid() { return solidShown ? { walls: solid.walls, painted: solid.painted(), isOpen: solid.isOpen, isWound: solid.isWound } : null; },
     linesOfMoves: () => Array.from(path.line),
     goToTime, plots,
     lineOf: (i) => path.line[moveOf[i]],

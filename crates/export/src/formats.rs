@@ -1,5 +1,6 @@
 //! One file a format. A new format is a new file here and nothing else.
 
+pub mod crash_svg;
 pub mod cutting_svg;
 pub mod dxf;
 pub mod glb;

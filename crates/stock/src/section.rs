@@ -6,6 +6,7 @@ use crate::WELD_MM;
 use crate::curve::{Content, Curve};
 use crate::cutter::Cutter;
 use crate::decompose::slabs_of;
+use crate::history::clip;
 use crate::knife::{Knife, Stops};
 use crate::removed::{Contact, Removed};
 use crate::row::{Row, Run};
@@ -123,6 +124,15 @@ impl Section {
             }
         }
         removed.contact()
+    }
+
+    /// What there is between two Z.
+    #[must_use]
+    pub fn between(&self, from: f64, to: f64) -> Self {
+        let mut between = Self::default();
+        clip(self.row.slabs_between(from, to), from, to, &mut between.left);
+        between.row.append(&mut between.left);
+        between
     }
 
     /// What the half-section covers, mm².

@@ -17,6 +17,7 @@ pub mod figures;
 mod inference;
 pub mod measuring;
 pub mod part;
+pub mod scene;
 pub mod target;
 mod text;
 pub mod thread_ways;

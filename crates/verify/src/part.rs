@@ -26,6 +26,7 @@ use turnwright_stock::{History, Machining, Removed, Section};
 use turnwright_units::{Position, WorkTip};
 
 use crate::figures::{BlockLine, Figure};
+use crate::scene::{Scene, way_of};
 use crate::target::{Aimed, Loss, Target, Watch, deepest_in_reach, rest_of_figure};
 use crate::thread_ways::{ThreadWay, ThreadWays};
 
@@ -72,6 +73,9 @@ pub const FIGURE_REST_MM: f64 = 0.05;
 /// At a limit a depth is within it, however numbers were rounded, mm.
 const ROUNDING_MM: f64 = 1e-6;
 
+/// Rapids into the stock that are looked at closely: of some it was told already.
+const STRUCK_MAX: u32 = 200;
+
 /// Commands between two looks at the size of the section.
 pub const COMMANDS_PER_LOOK: u64 = 1024;
 
@@ -93,6 +97,8 @@ pub struct PartRun {
     notebook: Notebook,
     edges: Edges,
     history: Option<History>,
+    /// What the moments of findings look like, when that is wanted.
+    scenes: Option<Vec<Scene>>,
     tools: BTreeMap<u32, ToolShape>,
     /// Nose radii of the stations, mm.
     noses: BTreeMap<u32, f64>,
@@ -141,6 +147,8 @@ pub struct Part {
     pub findings: Vec<Diagnostic>,
     /// Where and when, for each of the findings that have a place.
     pub marks: Vec<Mark>,
+    /// What the first of these moments look like, when it was asked for.
+    pub scenes: Vec<Scene>,
     /// The section along the program, when it was asked for.
     pub history: Option<History>,
     /// The tools by station, as far as they were looked at; 0 is what moves before any is called.
@@ -160,12 +168,26 @@ pub struct Mark {
     pub line: (SourceId, u32),
     /// Number of the command, from 0.
     pub command: u64,
+    /// The tool's station.
+    pub tool: u32,
     /// The programmed point when it happens.
     pub place: Point,
     /// How deep, mm; 0 when nothing is hit.
     pub depth_mm: f64,
     /// Round what is hit.
     pub bounds: Option<Bounds>,
+}
+
+impl Mark {
+    /// Whether it says that a tool went, or left material, where it should not.
+    pub fn is_collision(&self) -> bool {
+        self.depth_mm > 0.0 && !matches!(self.key, "part-cut-off" | "part-not-turned")
+    }
+
+    /// Whether the tool's programmed point was at its place; else that is a place of the part.
+    pub fn is_of_tool(&self) -> bool {
+        !matches!(self.key, "figure-gouged" | "figure-not-reached" | "rib-left-standing")
+    }
 }
 
 /// What the setup names itself, and what is told already.
@@ -244,6 +266,7 @@ impl PartRun {
             notebook,
             edges,
             history: None,
+            scenes: None,
             tools,
             noses,
             obstacles,
@@ -287,6 +310,13 @@ impl PartRun {
         self
     }
 
+    /// Keeps what the moments of findings look like.
+    #[must_use]
+    pub fn with_scenes(mut self) -> Self {
+        self.machining.keep_struck(STRUCK_MAX);
+        Self { scenes: Some(Vec::new()), ..self }
+    }
+
     /// Keeps the section along the program.
     #[must_use]
     pub fn with_history(mut self) -> Self {
@@ -323,7 +353,7 @@ impl PartRun {
             guard.watch(watch.counts(command));
         }
         let from = machining.at();
-        let parted = machining.parted();
+        let (parted, told) = (machining.parted(), notebook.marks.len());
         match (&command.action, &self.plain) {
             (Action::Thread { to, .. }, Some(plain)) => {
                 self.thread_ways.add(command, middle(plain.at()), middle(*to), plain.section());
@@ -340,6 +370,14 @@ impl PartRun {
             }
         });
         self.has_cut |= removed.bounds.is_some();
+        if let Some(scenes) = &mut self.scenes {
+            let before = machining.take_struck();
+            for (index, mark) in notebook.marks.iter().enumerate().skip(told) {
+                let before = before.clone().filter(|_| mark.key == "rapid-into-stock");
+                let way = || way_of(command, from, machining.at(), self.rates);
+                Scene::note(scenes, (index, mark), before, machining.section(), way);
+            }
+        }
         if machining.parted() != parted {
             self.parted = Some(*commands);
             if let Some(half_planes) = &mut self.half_planes {
@@ -434,6 +472,16 @@ impl PartRun {
                 self.notebook.not_reached(figure, plain.part(), nose_mm, self.commands);
             }
         }
+        // What is told at the end the finished part shows.
+        let mut scenes = self.scenes.take();
+        if let Some(scenes) = &mut scenes {
+            for (index, mark) in self.notebook.marks.iter().enumerate() {
+                if !scenes.iter().any(|scene| scene.mark == index) {
+                    Scene::note(scenes, (index, mark), None, self.machining.part(), Vec::new);
+                }
+            }
+            scenes.sort_by_key(|scene| self.notebook.marks[scene.mark].command);
+        }
         let aimed = self.target.filter(|_| !self.is_full).map(|(target, first)| {
             let watches = match target {
                 Target::Drawing(_) => self.watches.split_off(first),
@@ -453,6 +501,7 @@ impl PartRun {
             has_stock: self.notebook.has_stock,
             findings: self.notebook.findings,
             marks: self.notebook.marks,
+            scenes: scenes.unwrap_or_default(),
             history: self.history,
             tools: self.tools,
             obstacles: self.obstacles,
@@ -497,6 +546,7 @@ impl Notebook {
                 key: "figure-gouged",
                 line: (SourceId(line.0), line.1),
                 command: loss.command,
+                tool: loss.tool,
                 place: loss.piece.place,
                 depth_mm,
                 bounds: Some(loss.piece.bounds),
@@ -511,7 +561,8 @@ impl Notebook {
         let Some((depth_mm, place, line)) = deepest_in_reach(figure, &rests, nose_mm) else { return };
         if depth_mm > FIGURE_REST_MM + ROUNDING_MM {
             let line = (SourceId(figure.finishing.0), line);
-            let mark = Mark { key: "figure-not-reached", line, command, place, depth_mm, bounds: None };
+            let (key, tool) = ("figure-not-reached", figure.tool);
+            let mark = Mark { key, line, command, tool, place, depth_mm, bounds: None };
             self.note_depth(Severity::Warning, mark, figure.tool);
         }
     }
@@ -556,6 +607,7 @@ impl Notebook {
             key,
             line: (SourceId(event.origin.source), event.origin.line),
             command,
+            tool: self.tool,
             place: event.place,
             depth_mm: contact.map_or(0.0, |contact| contact.depth_mm),
             bounds: contact.map(|contact| contact.bounds),
@@ -571,7 +623,7 @@ impl Notebook {
     fn tell_fault(&mut self, fault: &Fault) {
         let Fault { key, tool, origin, command, place, depth_mm, bounds, angles_deg } = *fault;
         let line = (SourceId(origin.source), origin.line);
-        let mark = Mark { key, line, command, place, depth_mm, bounds: Some(bounds) };
+        let mark = Mark { key, line, command, tool, place, depth_mm, bounds: Some(bounds) };
         if let Some(finding) = self.note(Severity::Warning, mark, tool, &origin) {
             let (angle, limit) = angles_deg.unwrap_or_default();
             let degrees = |angle: f64| ((angle * 10.0).round() / 10.0).to_string();

@@ -130,6 +130,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
         blocks,
         stopped_at,
         written: Vec::new(),
+        not_drawn: 0,
     };
     if let Some(mut folder) = folder {
         write_alarm(&mut folder.buffer, &execution, printer);
@@ -253,9 +254,37 @@ impl OutFolder {
                 }
             }
         }
+        let (crashes, not_drawn) = report.crash_pictures(text, printer.speech);
+        drop_pictures(&folder);
+        for (at, name, picture) in &crashes {
+            let target = folder.join(name);
+            WholeFile::write(&target, picture.as_bytes(), printer.speech)?;
+            report.findings[*at].picture = Some(target.display().to_string());
+            names.push(name);
+        }
         trace.finish()?;
         times.finish()?;
+        report.not_drawn = not_drawn;
         report.written = names.iter().map(|name| folder.join(name).display().to_string()).collect();
         Ok(())
     }
+}
+
+/// Takes away what an earlier run wrote of crashes: a program that is mended has none.
+fn drop_pictures(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        if name.to_str().is_some_and(is_crash_picture) {
+            // One that stays is only out of date.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Whether a name is `crash-2-line-17.svg` or the like.
+fn is_crash_picture(name: &str) -> bool {
+    let numbers = name.strip_prefix("crash-").and_then(|rest| rest.strip_suffix(".svg"));
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    numbers.and_then(|rest| rest.split_once("-line-")).is_some_and(|(a, b)| is_number(a) && is_number(b))
 }

@@ -134,6 +134,7 @@ fn one(path: &Path, options: &Time, printer: &Printer) -> Result<Status, Fault> 
         meshed: Meshed::default(),
         blocks: execution.interpreter().blocks_run(),
         stopped_at,
+        not_drawn: 0,
         written: options.output.iter().map(|path| path.display().to_string()).collect(),
     };
     let mut out = printer.standard_output();

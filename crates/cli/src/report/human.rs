@@ -6,6 +6,8 @@ use turnwright_export::part::PartShape;
 use super::sizes::judged_text;
 use super::times::parts_text;
 use super::{RunReport, assumption_text, estimates, operation_name};
+use turnwright_verify::scene::SCENES_MAX;
+
 use crate::render::clean;
 use crate::speech::Speech;
 use crate::table::{Side, Table, facts, heading};
@@ -65,6 +67,10 @@ impl RunReport {
             out.push_str(&format!("\n{}\n", heading(speech.get("written"))));
             for file in &self.written {
                 out.push_str(&format!("  {}\n", clean(file)));
+            }
+            if self.not_drawn > 0 {
+                let values = [("n", &*self.not_drawn.to_string()), ("most", &*SCENES_MAX.to_string())];
+                out.push_str(&format!("  {}\n", speech.fill("pictures-left-out", &values)));
             }
         }
         out

@@ -41,6 +41,7 @@ impl RunReport {
             "estimates": self.estimates_json(speech),
             "assumptions": self.assumptions_json(speech),
             "files": self.written,
+            "pictures_left_out": self.not_drawn,
         })
     }
 

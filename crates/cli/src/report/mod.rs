@@ -197,6 +197,8 @@ pub(crate) struct RunReport {
     pub(crate) stopped_at: Option<u32>,
     /// Files written.
     pub(crate) written: Vec<String>,
+    /// Crashes without a picture of their own, when pictures are written.
+    pub(crate) not_drawn: usize,
 }
 
 /// The parts that the time is split into, and the keys of their names.

@@ -2,6 +2,7 @@
 
 use std::mem;
 
+use turnwright_export::formats::crash_svg::{CrashPicture, write_crash_svg};
 use turnwright_export::formats::cutting_svg::CuttingPicture;
 use turnwright_export::formats::html::{
     AssumptionRow, CycleTable, Fact, OperationRow, PlaceMark, Report, ReportDiagnostic, ReportPart,
@@ -151,11 +152,49 @@ impl RunReport {
     /// Where in the part a finding is.
     fn mark_of(&self, finding: &Finding) -> Option<PlaceMark> {
         let (part, _) = self.part.as_ref()?;
-        let place = finding.diagnostic.place.as_ref()?;
-        let is_it =
-            |mark: &&Mark| mark.key == finding.diagnostic.key && mark.line == (place.source, place.line);
-        let Mark { command, place, depth_mm, bounds, .. } = *part.marks.iter().find(is_it)?;
+        let Mark { command, place, depth_mm, bounds, .. } = part.marks[mark_index(part, finding)?];
         Some(PlaceMark { command, place, depth_mm, bounds })
+    }
+
+    /// The pictures of crashes and gouges: which finding, the name of the file, the picture. Those behind the first
+    /// [`SCENES_MAX`](turnwright_verify::scene::SCENES_MAX) are only counted.
+    pub(crate) fn crash_pictures(
+        &self,
+        text: &ProgramText,
+        speech: Speech,
+    ) -> (Vec<(usize, String, String)>, usize) {
+        let Some((part, _)) = &self.part else { return Default::default() };
+        let (mut drawn, mut left_out) = (Vec::new(), 0);
+        for (at, finding) in self.findings.iter().enumerate() {
+            let Some(index) = mark_index(part, finding) else { continue };
+            let mark = &part.marks[index];
+            if !mark.is_collision() {
+                continue;
+            }
+            let Some(scene) = part.scenes.iter().find(|scene| scene.mark == index) else {
+                left_out += 1;
+                continue;
+            };
+            let spot = finding.spot(Some(text));
+            let block = spot.map_or_else(String::new, |spot| spot.text.trim().to_string());
+            let picture = CrashPicture {
+                title: self.title(),
+                line: (mark.line.1, block),
+                message: finding.words(speech.messages(), speech.language).message.into_owned(),
+                section: &scene.section,
+                hit: scene.hit.as_ref(),
+                tool: part.tools.get(&mark.tool).filter(|_| mark.is_of_tool()),
+                place: mark.place,
+                way: &scene.way,
+                obstacles: &part.obstacles,
+                depth_mm: mark.depth_mm,
+                bounds: mark.bounds,
+                language: picture_language(speech.language),
+            };
+            let name = format!("crash-{}-line-{}.svg", drawn.len() + 1, mark.line.1);
+            drawn.push((at, name, write_crash_svg(&picture)));
+        }
+        (drawn, left_out)
     }
 
     fn page_part(&self, has_solid: bool) -> Option<ReportPart<'_>> {
@@ -200,6 +239,13 @@ impl RunReport {
         }
         facts
     }
+}
+
+/// Which of the part's marks a finding has.
+fn mark_index(part: &Part, finding: &Finding) -> Option<usize> {
+    let place = finding.diagnostic.place.as_ref()?;
+    let line = (place.source, place.line);
+    part.marks.iter().position(|mark| mark.key == finding.diagnostic.key && mark.line == line)
 }
 
 /// Minutes and seconds as every language writes them.

@@ -46,18 +46,18 @@ pub struct PartDrawing<'a> {
 }
 
 /// The scale and where zero lies.
-struct Sheet {
-    px_per_mm: f64,
-    zero_px: f64,
-    axis_px: f64,
+pub(super) struct Sheet {
+    pub(super) px_per_mm: f64,
+    pub(super) zero_px: f64,
+    pub(super) axis_px: f64,
 }
 
 impl Sheet {
-    fn x(&self, z_mm: f64) -> f64 {
+    pub(super) fn x(&self, z_mm: f64) -> f64 {
         self.zero_px + z_mm * self.px_per_mm
     }
 
-    fn y(&self, radius_mm: f64) -> f64 {
+    pub(super) fn y(&self, radius_mm: f64) -> f64 {
         self.axis_px - radius_mm * self.px_per_mm
     }
 }
@@ -189,7 +189,7 @@ fn write_section(svg: &mut String, sheet: &Sheet, shape: &PartShape) {
 }
 
 /// A loop as path data, above the axis or below it.
-fn write_loop(data: &mut String, sheet: &Sheet, edges: &[Segment], side: f64, without_axis: bool) {
+pub(super) fn write_loop(data: &mut String, sheet: &Sheet, edges: &[Segment], side: f64, without_axis: bool) {
     let place = |place: Point| (sheet.x(place.z), sheet.y(side * place.x));
     let mut pen = None;
     for edge in edges {

@@ -590,7 +590,7 @@ impl Ticks {
 }
 
 /// Width of a text as the bundled font sets it, roughly and rather too wide.
-fn text_width_px(text: &str, font_px: f64) -> f64 {
+pub(super) fn text_width_px(text: &str, font_px: f64) -> f64 {
     text.chars().map(|c| if c.is_ascii() { 0.58 } else { 1.0 }).sum::<f64>() * font_px
 }
 

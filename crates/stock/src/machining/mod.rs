@@ -34,7 +34,7 @@ pub use self::guard::{Guard, LOSSES_MAX};
 pub use self::half_planes::{HalfPlanes, TooLong, WOUND_COMMANDS_MAX, WOUND_CUTS_MAX};
 use self::threads::{Phase, ThreadCut, ThreadMarks};
 pub use self::threads::{THREADS_MAX, TURNS_MAX, ThreadHand, ThreadMark};
-pub use self::ways::edges;
+pub use self::ways::{edges, rapid_edges};
 use self::ways::{point, rapid_ways, ways};
 use crate::removed::{Contact, Removed};
 use crate::section::{Section, SectionFault};
@@ -102,6 +102,9 @@ pub struct Machining {
     sweep: Sweep,
     /// Whether rapids that meet the stock take it away.
     cuts_at_rapid: bool,
+    /// The section in front of the rapid that hit it last, as long as some are kept.
+    struck: Option<Section>,
+    strikes: u32,
 }
 
 impl Machining {
@@ -129,7 +132,19 @@ impl Machining {
             threads: ThreadMarks::default(),
             sweep: Sweep::new(),
             cuts_at_rapid: true,
+            struck: None,
+            strikes: 0,
         }
+    }
+
+    /// Keeps the section in front of so many rapids that hit it; each until it is taken.
+    pub const fn keep_struck(&mut self, strikes: u32) {
+        self.strikes = strikes;
+    }
+
+    /// The section in front of the last rapid that hit it.
+    pub const fn take_struck(&mut self) -> Option<Section> {
+        self.struck.take()
     }
 
     /// The same whose rapids leave the stock as it is, and only tell that they meet it.
@@ -172,7 +187,8 @@ impl Machining {
     /// the same, and sooner.
     #[must_use]
     pub fn only_cutting(&self) -> Self {
-        let mut same = Self { guards: Vec::new(), obstacles: Vec::new(), ..self.clone() };
+        let (guards, obstacles) = (Vec::new(), Vec::new());
+        let mut same = Self { guards, obstacles, strikes: 0, struck: None, ..self.clone() };
         same.tools.values_mut().for_each(|tool| tool.body = None);
         same
     }
@@ -304,6 +320,10 @@ impl Machining {
             let place = || first_touch(grooved.as_ref().unwrap_or(&self.section), &tool.cutting, way);
             teller.tell(EventKind::RapidIntoStock, Some(contact), place);
             if self.cuts_at_rapid {
+                if self.strikes > 0 {
+                    self.strikes -= 1;
+                    self.struck.get_or_insert_with(|| self.section.clone());
+                }
                 removed = take(&mut self.section, &mut self.guards, &self.sweep);
             }
         }

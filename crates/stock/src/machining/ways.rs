@@ -14,6 +14,16 @@ pub(super) fn point(position: Position<WorkTip>) -> Point {
 }
 
 /// The one or two lines of a rapid move.
+pub fn rapid_edges(
+    from: Position<WorkTip>,
+    to: Position<WorkTip>,
+    path: RapidPath,
+    rates: RapidRates,
+) -> impl Iterator<Item = Segment> {
+    rapid_ways(point(from), point(to), path, rates)
+}
+
+/// The one or two lines of a rapid move.
 pub(super) fn rapid_ways(
     from: Point,
     to: Point,
