@@ -7,30 +7,10 @@ use turnwright_canon::{Action, OtherAxes, Phase, RapidPath, SpindleSpeed, Spindl
 use turnwright_cycles::{
     Clamping, Context, CycleMove, HoleRequest, HoleWork, Peck, PeckAxis, PeckRetract, Tap, hole,
 };
+use turnwright_dice::Dice;
 use turnwright_units::{
     Angle, Feed, FeedPerRevolution, Lead, LeastIncrement, Length, Position, Radius, Rpm, Seconds, WorkTip,
 };
-
-/// Marsaglia's xorshift: the same numbers on every machine.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    /// From `low` to `high`, both included.
-    fn between(&mut self, low: i64, high: i64) -> i64 {
-        low + (self.roll() % (high - low + 1) as u64) as i64
-    }
-
-    fn chance(&mut self, percent: u64) -> bool {
-        self.roll() % 100 < percent
-    }
-}
 
 const fn thousandths(count: i64) -> Length {
     Length::from_nm(count * 1_000)
@@ -41,16 +21,16 @@ fn spindle(state: SpindleState) -> Action {
 }
 
 fn work(dice: &mut Dice, peck: Option<Peck>) -> HoleWork {
-    match dice.between(0, 3) {
+    match dice.whole(0, 3) {
         0 | 1 => HoleWork::Drill(peck),
         2 => HoleWork::Bore(Feed::PerRevolution(FeedPerRevolution(thousandths(200)))),
         _ => HoleWork::Tap(Box::new(Tap {
-            start: dice.chance(50).then(|| spindle(SpindleState::Clockwise)),
+            start: dice.percent(50).then(|| spindle(SpindleState::Clockwise)),
             stop: spindle(SpindleState::Stop),
             reverse: spindle(SpindleState::CounterClockwise),
             forward: spindle(SpindleState::Clockwise),
-            restart: dice.chance(50).then(|| spindle(SpindleState::Clockwise)),
-            lead: dice.chance(50).then(|| Lead(thousandths(1_000))),
+            restart: dice.percent(50).then(|| spindle(SpindleState::Clockwise)),
+            lead: dice.percent(50).then(|| Lead(thousandths(1_000))),
             peck,
         })),
     }
@@ -58,18 +38,18 @@ fn work(dice: &mut Dice, peck: Option<Peck>) -> HoleWork {
 
 /// A hole with lengths as `length` rolls them; `initial` is where the tool stands.
 fn request(dice: &mut Dice, length: impl Fn(&mut Dice) -> Length) -> HoleRequest {
-    let axis = if dice.chance(50) { PeckAxis::X } else { PeckAxis::Z };
+    let axis = if dice.percent(50) { PeckAxis::X } else { PeckAxis::Z };
     let start = Position::new(Radius(length(dice)), length(dice));
     let initial = if axis == PeckAxis::X { start.x.0 } else { start.z };
-    let way = if dice.chance(50) { 1 } else { -1 };
+    let way = if dice.percent(50) { 1 } else { -1 };
     let signed = |length: Length| Length::from_nm(length.abs().nm() * way);
     let r_point = initial + signed(length(dice));
-    let retract = if dice.chance(50) {
+    let retract = if dice.percent(50) {
         PeckRetract::Short(length(dice).abs())
     } else {
         PeckRetract::Full(length(dice).abs())
     };
-    let peck = dice.chance(70).then(|| Peck { depth: length(dice).abs(), retract });
+    let peck = dice.percent(70).then(|| Peck { depth: length(dice).abs(), retract });
     HoleRequest {
         context: Context {
             start,
@@ -79,17 +59,17 @@ fn request(dice: &mut Dice, length: impl Fn(&mut Dice) -> Length) -> HoleRequest
         },
         axis,
         place: length(dice),
-        step: if dice.chance(50) { length(dice) } else { Length::ZERO },
+        step: if dice.percent(50) { length(dice) } else { Length::ZERO },
         others: OtherAxes::default(),
         others_step: (Angle::ZERO, Length::ZERO),
         initial,
         r_point,
         bottom: r_point + signed(length(dice)),
         work: work(dice, peck),
-        dwell: Seconds(if dice.chance(30) { 0.5 } else { 0.0 }),
-        clamping: dice.chance(20).then_some(Clamping { on: 31, off: 32, dwell: Seconds(0.1) }),
-        stays_at_r: dice.chance(30),
-        repeats: dice.between(1, 3) as u32,
+        dwell: Seconds(if dice.percent(30) { 0.5 } else { 0.0 }),
+        clamping: dice.percent(20).then_some(Clamping { on: 31, off: 32, dwell: Seconds(0.1) }),
+        stays_at_r: dice.percent(30),
+        repeats: dice.whole(1, 3) as u32,
     }
 }
 
@@ -103,10 +83,10 @@ fn peck_of(request: &HoleRequest) -> Option<Peck> {
 
 #[test]
 fn holes_are_cut_in_bites_and_never_passed_at_rapid() {
-    let mut dice = Dice(20_261_122);
+    let mut dice = Dice::new(20_261_122);
     for _ in 0..10_000 {
         // Whole hundredths, so that nothing is rounded.
-        let asked = request(&mut dice, |dice| thousandths(dice.between(1, 3_000) * 10));
+        let asked = request(&mut dice, |dice| thousandths(dice.whole(1, 3_000) * 10));
         let along = |place: Position<WorkTip>| match asked.axis {
             PeckAxis::X => (place.x.0.nm(), place.z.nm()),
             PeckAxis::Z => (place.z.nm(), place.x.0.nm()),
@@ -164,9 +144,9 @@ fn told(asked: HoleRequest) -> Vec<Told> {
 
 #[test]
 fn a_hole_in_the_side_is_one_in_the_face_turned_round() {
-    let mut dice = Dice(606_060);
+    let mut dice = Dice::new(606_060);
     for _ in 0..5_000 {
-        let asked = request(&mut dice, |dice| thousandths(dice.between(1, 3_000) * 10));
+        let asked = request(&mut dice, |dice| thousandths(dice.whole(1, 3_000) * 10));
         let start = asked.context.start;
         let turned = HoleRequest {
             axis: if asked.axis == PeckAxis::X { PeckAxis::Z } else { PeckAxis::X },
@@ -179,10 +159,10 @@ fn a_hole_in_the_side_is_one_in_the_face_turned_round() {
 
 #[test]
 fn mirrored_and_shifted_holes_have_mirrored_and_shifted_moves() {
-    let mut dice = Dice(808_080);
+    let mut dice = Dice::new(808_080);
     for _ in 0..5_000 {
-        let asked = request(&mut dice, |dice| thousandths(dice.between(1, 3_000) * 10));
-        let shift = thousandths(dice.between(-50_000, 50_000) * 2);
+        let asked = request(&mut dice, |dice| thousandths(dice.whole(1, 3_000) * 10));
+        let shift = thousandths(dice.whole(-50_000, 50_000) * 2);
         let start = asked.context.start;
         let (mirrored, shifted) = match asked.axis {
             PeckAxis::X => {
@@ -208,19 +188,19 @@ fn mirrored_and_shifted_holes_have_mirrored_and_shifted_moves() {
 
 #[test]
 fn no_hole_panics_or_runs_away() {
-    let mut dice = Dice(0xDEAD_BEEF);
+    let mut dice = Dice::new(0xDEAD_BEEF);
     let mut accepted = 0;
     for _ in 0..20_000 {
-        let wild = |dice: &mut Dice| match dice.between(0, 9) {
+        let wild = |dice: &mut Dice| match dice.whole(0, 9) {
             0 => Length::ZERO,
             1 => Length::from_nm(1),
             2 => Length::from_nm(i64::MAX),
             3 => Length::from_nm(i64::MIN),
-            4 => Length::from_nm(dice.between(-2_000_000_000_000_000, 2_000_000_000_000_000)),
-            _ => thousandths(dice.between(-50_000, 50_000)),
+            4 => Length::from_nm(dice.whole(-2_000_000_000_000_000, 2_000_000_000_000_000)),
+            _ => thousandths(dice.whole(-50_000, 50_000)),
         };
-        let mut asked = request(&mut dice, |dice| thousandths(dice.between(-50_000, 50_000)));
-        if dice.chance(50) {
+        let mut asked = request(&mut dice, |dice| thousandths(dice.whole(-50_000, 50_000)));
+        if dice.percent(50) {
             (asked.place, asked.step) = (wild(&mut dice), wild(&mut dice));
             (asked.initial, asked.bottom, asked.r_point) =
                 (wild(&mut dice), wild(&mut dice), wild(&mut dice));

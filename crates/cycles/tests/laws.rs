@@ -12,6 +12,7 @@ use turnwright_cycles::{
     hump_before_end, monotony_fault, pattern, rough, rough_pockets, start_inside_fault, taper_crosses_start,
     thread, thread_once, turn_back_fault,
 };
+use turnwright_dice::Dice;
 use turnwright_units::{
     Angle, Feed, FeedPerRevolution, Lead, LeastIncrement, Length, Position, Radius, WorkTip,
 };
@@ -30,31 +31,6 @@ const INFEEDS: [FlankInfeed; 5] = [
 const UNIT: LeastIncrement = LeastIncrement::METRIC_B;
 /// Canonical figures are in thousandths of a millimetre.
 const STEP_NM: i64 = 1_000;
-
-/// Marsaglia's xorshift: the same numbers on every machine.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    /// From `low` to `high`, both included.
-    fn between(&mut self, low: i64, high: i64) -> i64 {
-        low + (self.roll() % (high - low + 1) as u64) as i64
-    }
-
-    fn chance(&mut self, percent: u64) -> bool {
-        self.roll() % 100 < percent
-    }
-
-    fn pick<T: Copy>(&mut self, from: &[T]) -> T {
-        from[(self.roll() % from.len() as u64) as usize]
-    }
-}
 
 /// An element seen from A: depth `h` into the work, way `w` along the cut, thousandths.
 #[derive(Clone, Copy, Debug)]
@@ -127,10 +103,10 @@ impl Setting {
 
 fn setting(dice: &mut Dice) -> Setting {
     Setting {
-        along: dice.pick(&[CutAlong::Z, CutAlong::X]),
-        origin: (dice.between(-80_000, 80_000), dice.between(-80_000, 80_000)),
-        su: dice.pick(&[-1, 1]),
-        sv: dice.pick(&[-1, 1]),
+        along: *dice.pick(&[CutAlong::Z, CutAlong::X]),
+        origin: (dice.whole(-80_000, 80_000), dice.whole(-80_000, 80_000)),
+        su: *dice.pick(&[-1, 1]),
+        sv: *dice.pick(&[-1, 1]),
     }
 }
 
@@ -138,7 +114,7 @@ fn setting(dice: &mut Dice) -> Setting {
 fn strokes(dice: &mut Dice, bottom: i64, pockets: bool) -> Vec<Stroke> {
     let mut at = (bottom, 0);
     let mut out = Vec::new();
-    for _ in 0..dice.between(1, 9) {
+    for _ in 0..dice.whole(1, 9) {
         let stroke = stroke(dice, at, pockets);
         if stroke.to.0 < 0 || stroke.to == stroke.from {
             continue;
@@ -154,18 +130,18 @@ fn strokes(dice: &mut Dice, bottom: i64, pockets: bool) -> Vec<Stroke> {
 
 fn stroke(dice: &mut Dice, at: (i64, i64), pockets: bool) -> Stroke {
     let (h, w) = at;
-    let size = dice.between(1, 900);
+    let size = dice.whole(1, 900);
     let line = |to| Stroke { from: at, to, arc: None };
-    match dice.between(0, if pockets { 6 } else { 5 }) {
+    match dice.whole(0, if pockets { 6 } else { 5 }) {
         0 => line((h, w + 10 * size)),
         1 => line((h - 5 * size, w)),
-        2 => line((h - dice.between(1, 9) * size, w + dice.between(1, 9) * size)),
+        2 => line((h - dice.whole(1, 9) * size, w + dice.whole(1, 9) * size)),
         // Upright first, then flat; and the other way round.
         3 => Stroke { from: at, to: (h - 5 * size, w + 5 * size), arc: Some(((h, w + 5 * size), false)) },
         4 => Stroke { from: at, to: (h - 5 * size, w + 5 * size), arc: Some(((h - 5 * size, w), false)) },
         // A piece of a circle that ends on whole numbers: 3, 4, 5.
         5 => Stroke { from: at, to: (h - size, w + 3 * size), arc: Some(((h - 5 * size, w), false)) },
-        _ => line((h + dice.between(0, 5) * size, w + dice.between(0, 5) * size)),
+        _ => line((h + dice.whole(0, 5) * size, w + dice.whole(0, 5) * size)),
     }
     .turned()
 }
@@ -198,19 +174,19 @@ fn thousandths(count: i64) -> Length {
 }
 
 fn rough_request(dice: &mut Dice, setting: &Setting) -> RoughRequest {
-    let (au, av) = (dice.between(-300, 900), dice.between(-300, 300));
+    let (au, av) = (dice.whole(-300, 900), dice.whole(-300, 300));
     let (x, z) = if setting.along == CutAlong::Z { (-setting.su * au, av) } else { (av, -setting.su * au) };
     RoughRequest {
         context: context(setting.place((0, 0))),
         along: setting.along,
-        depth: thousandths(dice.between(50, 4_000)),
-        escape: thousandths(dice.between(0, 800)),
+        depth: thousandths(dice.whole(50, 4_000)),
+        escape: thousandths(dice.whole(0, 800)),
         allowance_x: Radius(thousandths(x)),
         allowance_z: thousandths(z),
-        coincident: dice.pick(&[Coincident::Through, Coincident::Stop]),
+        coincident: *dice.pick(&[Coincident::Through, Coincident::Stop]),
         level_origin: LevelOrigin::ShiftedStart,
-        escape_speed: dice.pick(&[EscapeSpeed::Feed, EscapeSpeed::Rapid]),
-        semi_finish: dice.chance(80),
+        escape_speed: *dice.pick(&[EscapeSpeed::Feed, EscapeSpeed::Rapid]),
+        semi_finish: dice.percent(80),
         monotony: Monotony::Ignore,
     }
 }
@@ -238,13 +214,13 @@ fn assert_outside(strokes: &[Stroke], from: (f64, f64), to: (f64, f64), step: &C
 
 #[test]
 fn roughing_never_enters_the_work_and_never_takes_more_than_the_depth() {
-    let mut dice = Dice(0x9E37_79B9_7F4A_7C15);
+    let mut dice = Dice::new(0x9E37_79B9_7F4A_7C15);
     let mut cuts = 0;
     for case in 0..4_000 {
         let setting = setting(&mut dice);
-        let bottom = dice.between(500, 30_000);
+        let bottom = dice.whole(500, 30_000);
         let strokes = strokes(&mut dice, bottom, case % 2 == 1);
-        let approach = dice.pick(&[FigureMotion::Rapid, FigureMotion::Line]);
+        let approach = *dice.pick(&[FigureMotion::Rapid, FigureMotion::Line]);
         let request = rough_request(&mut dice, &setting);
         let cycle = rough(setting.figure(bottom, approach, &strokes), request).expect("a cycle");
         let estimate = cycle.move_estimate();
@@ -308,10 +284,10 @@ fn assert_cut_reaches(strokes: &[Stroke], (h, w): (f64, f64), coincident: Coinci
 
 #[test]
 fn only_pockets_are_found_not_monotone() {
-    let mut dice = Dice(77);
+    let mut dice = Dice::new(77);
     for _ in 0..3_000 {
         let setting = setting(&mut dice);
-        let bottom = dice.between(500, 30_000);
+        let bottom = dice.whole(500, 30_000);
         let mut strokes = strokes(&mut dice, bottom, false);
         let figure = setting.figure(bottom, FigureMotion::Rapid, &strokes);
         assert_eq!(monotony_fault(&figure, setting.along, Tolerance::EXACT), None, "{figure:?}");
@@ -380,10 +356,10 @@ fn assert_same_but(
 
 #[test]
 fn mirrored_and_shifted_requests_give_mirrored_and_shifted_moves() {
-    let mut dice = Dice(4_711);
+    let mut dice = Dice::new(4_711);
     for _ in 0..1_500 {
         let setting = setting(&mut dice);
-        let bottom = dice.between(500, 30_000);
+        let bottom = dice.whole(500, 30_000);
         let strokes = strokes(&mut dice, bottom, true);
         let figure = setting.figure(bottom, FigureMotion::Rapid, &strokes);
         let request = rough_request(&mut dice, &setting);
@@ -401,7 +377,7 @@ fn mirrored_and_shifted_requests_give_mirrored_and_shifted_moves() {
         let exact: Vec<_> = ends(&moves).into_iter().map(mirrored).collect();
         assert_eq!(exact, ends(&mirror), "a mirror rounds the same way");
 
-        let way = thousandths(dice.between(-200_000, 200_000));
+        let way = thousandths(dice.whole(-200_000, 200_000));
         let further = RoughRequest { context: context(along_z(request.context.start, way)), ..request };
         let shifted = changed(&figure, false, |place| along_z(place, way));
         let shift: Vec<_> = rough(shifted, further).expect("a cycle").collect();
@@ -411,19 +387,19 @@ fn mirrored_and_shifted_requests_give_mirrored_and_shifted_moves() {
 
 #[test]
 fn the_pattern_keeps_its_shape_and_divides_its_relief() {
-    let mut dice = Dice(31);
+    let mut dice = Dice::new(31);
     for _ in 0..1_000 {
         let setting = setting(&mut dice);
-        let bottom = dice.between(500, 30_000);
+        let bottom = dice.whole(500, 30_000);
         let strokes = strokes(&mut dice, bottom, true);
         let figure = setting.figure(bottom, FigureMotion::Rapid, &strokes);
         let request = PatternRequest {
             context: context(figure.start),
-            relief_x: Radius(thousandths(dice.between(-5_000, 5_000))),
-            relief_z: thousandths(dice.between(-5_000, 5_000)),
-            passes: dice.between(1, 9) as u32,
-            allowance_x: Radius(thousandths(dice.between(-500, 500))),
-            allowance_z: thousandths(dice.between(-500, 500)),
+            relief_x: Radius(thousandths(dice.whole(-5_000, 5_000))),
+            relief_z: thousandths(dice.whole(-5_000, 5_000)),
+            passes: dice.whole(1, 9) as u32,
+            allowance_x: Radius(thousandths(dice.whole(-500, 500))),
+            allowance_z: thousandths(dice.whole(-500, 500)),
             single_pass: SinglePass::Once,
         };
         let cycle = pattern(figure.clone(), request).expect("a cycle");
@@ -449,24 +425,22 @@ fn the_pattern_keeps_its_shape_and_divides_its_relief() {
 
 #[test]
 fn grooves_reach_the_bottom_of_every_column_in_small_bites() {
-    let mut dice = Dice(5);
+    let mut dice = Dice::new(5);
     for _ in 0..2_000 {
-        let start = Position::new(
-            Radius(thousandths(dice.between(1, 40_000))),
-            thousandths(dice.between(-9_000, 9_000)),
-        );
+        let start =
+            Position::new(Radius(thousandths(dice.whole(1, 40_000))), thousandths(dice.whole(-9_000, 9_000)));
         let end = Position::new(
-            Radius(thousandths(dice.between(-40_000, 40_000))),
-            thousandths(dice.between(-9_000, 9_000)),
+            Radius(thousandths(dice.whole(-40_000, 40_000))),
+            thousandths(dice.whole(-9_000, 9_000)),
         );
         let request = GrooveRequest {
             context: context(start),
-            peck_axis: dice.pick(&[PeckAxis::X, PeckAxis::Z]),
+            peck_axis: *dice.pick(&[PeckAxis::X, PeckAxis::Z]),
             end,
-            peck: Some(thousandths(dice.between(300, 5_000))),
-            step: Some(thousandths(dice.between(300, 5_000))),
-            retract: thousandths(dice.between(0, 400)),
-            relief: thousandths(dice.between(0, 300)),
+            peck: Some(thousandths(dice.whole(300, 5_000))),
+            step: Some(thousandths(dice.whole(300, 5_000))),
+            retract: thousandths(dice.whole(0, 400)),
+            relief: thousandths(dice.whole(0, 300)),
             relief_direction: ReliefDirection::BySign,
         };
         let along = |place: Position<WorkTip>| match request.peck_axis {
@@ -511,14 +485,14 @@ fn grooves_reach_the_bottom_of_every_column_in_small_bites() {
 
 #[test]
 fn thread_depths_rise_to_the_height_and_areas_shrink() {
-    let mut dice = Dice(99);
+    let mut dice = Dice::new(99);
     for _ in 0..10_000 {
-        let height = dice.between(200, 4_000);
-        let first = dice.between(20, 900);
-        let least = dice.between(0, height.min(300));
-        let allowance = dice.between(0, height / 4);
-        let finishing = dice.between(1, 5) as u32;
-        let law = dice.pick(&DEPTH_LAWS);
+        let height = dice.whole(200, 4_000);
+        let first = dice.whole(20, 900);
+        let least = dice.whole(0, height.min(300));
+        let allowance = dice.whole(0, height / 4);
+        let finishing = dice.whole(1, 5) as u32;
+        let law = *dice.pick(&DEPTH_LAWS);
         let r = |count| Radius(thousandths(count));
         let schedule =
             depth_schedule(r(height), r(first), r(least), r(allowance), finishing, law).expect("depths");
@@ -559,35 +533,35 @@ fn assert_steps_obey(law: DepthLaw, depths: &[f64], first: f64, least: f64) {
 }
 
 fn thread_request(dice: &mut Dice) -> ThreadRequest {
-    let inside = dice.chance(50);
+    let inside = dice.percent(50);
     let (root, start_x) = if inside { (20_000, 16_000) } else { (17_400, 25_000) };
-    let sign = dice.pick(&[-1, 1]);
+    let sign = *dice.pick(&[-1, 1]);
     let start = Position::new(Radius(thousandths(start_x)), thousandths(sign * 5_000));
     ThreadRequest {
         context: context(start),
-        end: Position::new(Radius(thousandths(root)), thousandths(-sign * dice.between(0, 20_000))),
+        end: Position::new(Radius(thousandths(root)), thousandths(-sign * dice.whole(0, 20_000))),
         taper: Radius::ZERO,
         height: Radius(thousandths(1_300)),
-        first_depth: Radius(thousandths(dice.between(50, 400))),
-        min_depth: Radius(thousandths(dice.between(0, 100))),
+        first_depth: Radius(thousandths(dice.whole(50, 400))),
+        min_depth: Radius(thousandths(dice.whole(0, 100))),
         finishing_allowance: Radius(thousandths(50)),
         finishing_passes: 2,
-        run_out: thousandths(dice.between(0, 20_000)),
-        run_out_angle_deg: dice.between(0, 80) as u8,
+        run_out: thousandths(dice.whole(0, 20_000)),
+        run_out_angle_deg: dice.whole(0, 80) as u8,
         run_out_depth: None,
         pull_out_feed: None,
-        nose_angle_deg: dice.pick(&[0, 29, 55, 60, 90]),
+        nose_angle_deg: *dice.pick(&[0, 29, 55, 60, 90]),
         lead: Lead(thousandths(2_000)),
         start_angle: Angle::ZERO,
-        starts: dice.between(0, 3) as u32,
-        depths: dice.pick(&DEPTH_LAWS),
-        infeed: dice.pick(&INFEEDS),
+        starts: dice.whole(0, 3) as u32,
+        depths: *dice.pick(&DEPTH_LAWS),
+        infeed: *dice.pick(&INFEEDS),
     }
 }
 
 #[test]
 fn threads_stay_between_root_and_start() {
-    let mut dice = Dice(123);
+    let mut dice = Dice::new(123);
     for _ in 0..4_000 {
         let request = thread_request(&mut dice);
         let (start, end) = (request.context.start, request.end);
@@ -614,7 +588,7 @@ fn threads_stay_between_root_and_start() {
 /// Every pass at full height takes the same way, whichever flank the passes before it went down.
 #[test]
 fn finishing_passes_follow_one_path() {
-    let mut dice = Dice(77);
+    let mut dice = Dice::new(77);
     for _ in 0..2_000 {
         let request = ThreadRequest { finishing_passes: 4, ..thread_request(&mut dice) };
         let starts = request.starts.max(1) as usize;
@@ -653,18 +627,18 @@ fn wild(dice: &mut Dice) -> i64 {
         i64::MAX - 1,
         i64::MAX / 2,
     ];
-    if dice.chance(60) { dice.pick(&special) } else { (dice.roll() as i64) >> dice.between(0, 63) }
+    if dice.percent(60) { *dice.pick(&special) } else { (dice.roll() as i64) >> dice.whole(0, 63) }
 }
 
 /// Now and then something ordinary, so that not every request is refused at once.
 fn word(dice: &mut Dice) -> Length {
-    let tame = dice.chance(70);
-    Length::from_nm(if tame { dice.between(-40, 40) * 500_000 } else { wild(dice) })
+    let tame = dice.percent(70);
+    Length::from_nm(if tame { dice.whole(-40, 40) * 500_000 } else { wild(dice) })
 }
 
 fn mostly_positive(dice: &mut Dice) -> Length {
     let length = word(dice);
-    if dice.chance(90) { length.abs() } else { length }
+    if dice.percent(90) { length.abs() } else { length }
 }
 
 fn wild_place(dice: &mut Dice) -> Position<WorkTip> {
@@ -673,15 +647,15 @@ fn wild_place(dice: &mut Dice) -> Position<WorkTip> {
 
 fn wild_figure(dice: &mut Dice, start: Position<WorkTip>) -> Figure {
     let mut elements = Vec::new();
-    for _ in 0..dice.between(0, 6) {
-        let motion = match dice.between(0, 3) {
+    for _ in 0..dice.whole(0, 6) {
+        let motion = match dice.whole(0, 3) {
             0 => FigureMotion::Rapid,
             1 => FigureMotion::Line,
             2 => FigureMotion::Arc { turn: Turn::Clockwise, centre: wild_place(dice) },
             _ => FigureMotion::Arc { turn: Turn::CounterClockwise, centre: wild_place(dice) },
         };
         let to = elements.last().map_or(start, |element: &Element| element.to);
-        let to = if dice.chance(15) { to } else { wild_place(dice) };
+        let to = if dice.percent(15) { to } else { wild_place(dice) };
         elements.push(Element { to, motion, line: 0 });
     }
     Figure { start, elements }
@@ -690,7 +664,7 @@ fn wild_figure(dice: &mut Dice, start: Position<WorkTip>) -> Figure {
 fn wild_context(dice: &mut Dice) -> Context {
     let all =
         [LeastIncrement::METRIC_A, LeastIncrement::METRIC_C, LeastIncrement::INCH_B, LeastIncrement::INCH_C];
-    Context { increment: dice.pick(&all), ..context(wild_place(dice)) }
+    Context { increment: *dice.pick(&all), ..context(wild_place(dice)) }
 }
 
 /// Runs a cycle for a while: never more moves than announced, none without length, and it ends where it began.
@@ -717,12 +691,12 @@ fn run(
 
 #[test]
 fn no_roughing_request_panics_or_runs_away() {
-    let mut dice = Dice(0xDEAD_BEEF);
+    let mut dice = Dice::new(0xDEAD_BEEF);
     let (mut accepted, mut with_pockets) = (0, 0);
     for _ in 0..60_000 {
         let context = wild_context(&mut dice);
         let figure = wild_figure(&mut dice, context.start);
-        let along = dice.pick(&[CutAlong::Z, CutAlong::X]);
+        let along = *dice.pick(&[CutAlong::Z, CutAlong::X]);
         let request = RoughRequest {
             context,
             along,
@@ -730,11 +704,11 @@ fn no_roughing_request_panics_or_runs_away() {
             escape: word(&mut dice),
             allowance_x: Radius(word(&mut dice)),
             allowance_z: word(&mut dice),
-            coincident: dice.pick(&[Coincident::Through, Coincident::Stop]),
-            level_origin: dice.pick(&[LevelOrigin::ShiftedStart, LevelOrigin::Start]),
+            coincident: *dice.pick(&[Coincident::Through, Coincident::Stop]),
+            level_origin: *dice.pick(&[LevelOrigin::ShiftedStart, LevelOrigin::Start]),
             escape_speed: EscapeSpeed::Feed,
-            semi_finish: dice.chance(50),
-            monotony: if dice.chance(20) {
+            semi_finish: dice.percent(50),
+            monotony: if dice.percent(20) {
                 Monotony::Check { tolerance: Tolerance::both(word(&mut dice)) }
             } else {
                 Monotony::Ignore
@@ -751,8 +725,8 @@ fn no_roughing_request_panics_or_runs_away() {
             rough: request,
             tolerance: Tolerance::both(word(&mut dice)),
             clearance: word(&mut dice),
-            hump: dice.pick(&[Hump::AlongContour, Hump::ExtraLevel]),
-            bottom_escape: dice.pick(&[BottomEscape::Follow, BottomEscape::Diagonal]),
+            hump: *dice.pick(&[Hump::AlongContour, Hump::ExtraLevel]),
+            bottom_escape: *dice.pick(&[BottomEscape::Follow, BottomEscape::Diagonal]),
             lift_speed: EscapeSpeed::Rapid,
         };
         let cycle = rough_pockets(figure, request);
@@ -764,7 +738,7 @@ fn no_roughing_request_panics_or_runs_away() {
 
 #[test]
 fn no_pattern_or_groove_panics_or_runs_away() {
-    let mut dice = Dice(0xC0FFEE);
+    let mut dice = Dice::new(0xC0FFEE);
     let mut accepted = (0, 0);
     for _ in 0..40_000 {
         let context = wild_context(&mut dice);
@@ -772,10 +746,10 @@ fn no_pattern_or_groove_panics_or_runs_away() {
             context,
             relief_x: Radius(word(&mut dice)),
             relief_z: word(&mut dice),
-            passes: if dice.chance(80) { dice.between(0, 5) as u32 } else { wild(&mut dice) as u32 },
+            passes: if dice.percent(80) { dice.whole(0, 5) as u32 } else { wild(&mut dice) as u32 },
             allowance_x: Radius(word(&mut dice)),
             allowance_z: word(&mut dice),
-            single_pass: dice.pick(&[SinglePass::Once, SinglePass::Twice]),
+            single_pass: *dice.pick(&[SinglePass::Once, SinglePass::Twice]),
         };
         let cycle = pattern(wild_figure(&mut dice, context.start), request);
         let estimate = cycle.as_ref().map_or(0, |cycle| cycle.move_estimate());
@@ -783,13 +757,13 @@ fn no_pattern_or_groove_panics_or_runs_away() {
 
         let request = GrooveRequest {
             context,
-            peck_axis: dice.pick(&[PeckAxis::X, PeckAxis::Z]),
+            peck_axis: *dice.pick(&[PeckAxis::X, PeckAxis::Z]),
             end: wild_place(&mut dice),
-            peck: dice.chance(80).then(|| word(&mut dice)),
-            step: dice.chance(80).then(|| word(&mut dice)),
+            peck: dice.percent(80).then(|| word(&mut dice)),
+            step: dice.percent(80).then(|| word(&mut dice)),
             retract: word(&mut dice),
             relief: word(&mut dice),
-            relief_direction: dice.pick(&[
+            relief_direction: *dice.pick(&[
                 ReliefDirection::AgainstShift,
                 ReliefDirection::AlwaysPlus,
                 ReliefDirection::BySign,
@@ -804,7 +778,7 @@ fn no_pattern_or_groove_panics_or_runs_away() {
 
 #[test]
 fn no_thread_or_box_panics_or_runs_away() {
-    let mut dice = Dice(0xB01D_FACE);
+    let mut dice = Dice::new(0xB01D_FACE);
     let mut accepted = (0, 0);
     for _ in 0..60_000 {
         let context = wild_context(&mut dice);
@@ -818,17 +792,17 @@ fn no_thread_or_box_panics_or_runs_away() {
             first_depth: Radius(mostly_positive(&mut dice)),
             min_depth: Radius(mostly_positive(&mut dice)),
             finishing_allowance: Radius(mostly_positive(&mut dice)),
-            finishing_passes: if dice.chance(80) { 2 } else { wild(&mut dice) as u32 },
+            finishing_passes: if dice.percent(80) { 2 } else { wild(&mut dice) as u32 },
             run_out: mostly_positive(&mut dice),
-            run_out_angle_deg: dice.between(0, 100) as u8,
-            run_out_depth: dice.chance(20).then(|| mostly_positive(&mut dice)),
+            run_out_angle_deg: dice.whole(0, 100) as u8,
+            run_out_depth: dice.percent(20).then(|| mostly_positive(&mut dice)),
             pull_out_feed: None,
-            nose_angle_deg: dice.between(0, 190) as u8,
+            nose_angle_deg: dice.whole(0, 190) as u8,
             lead: Lead(mostly_positive(&mut dice)),
             start_angle: Angle::from_millidegrees(wild(&mut dice)),
-            starts: if dice.chance(80) { 1 } else { wild(&mut dice) as u32 },
-            depths: dice.pick(&DEPTH_LAWS),
-            infeed: dice.pick(&INFEEDS),
+            starts: if dice.percent(80) { 1 } else { wild(&mut dice) as u32 },
+            depths: *dice.pick(&DEPTH_LAWS),
+            infeed: *dice.pick(&INFEEDS),
         };
         let cycle = thread(request);
         let estimate = cycle.as_ref().map_or(0, |cycle| cycle.move_estimate());
@@ -851,7 +825,7 @@ fn no_thread_or_box_panics_or_runs_away() {
             run_in: None,
         };
         accepted.1 += i32::from(run(thread_once(once), 5, context.start));
-        let first = dice.pick(&[FirstAxis::X, FirstAxis::Z]);
+        let first = *dice.pick(&[FirstAxis::X, FirstAxis::Z]);
         let _ = taper_crosses_start(first, context.start, end, taper.0);
         run(box_cycle(BoxRequest { context, first, end, taper: taper.0 }), 4, context.start);
     }

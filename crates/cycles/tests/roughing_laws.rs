@@ -10,37 +10,13 @@ use turnwright_cycles::{
     LevelOrigin, Misuse, Monotony, PocketRequest, RoughRequest, Tolerance, hump_before_end, monotony_fault,
     rough, rough_and_semi_finish, rough_pockets, rough_pockets_and_semi_finish, turn_back_fault,
 };
+use turnwright_dice::Dice;
 use turnwright_units::{Feed, FeedPerRevolution, LeastIncrement, Length, Position, Radius, WorkTip};
 
 /// Figures are in thousandths of a millimetre.
 const STEP_NM: i64 = 1_000;
 /// Neighbours of a slice, thousandths: places are rounded to half of that.
 const NEAR: f64 = 2.0;
-
-/// Marsaglia's xorshift: the same numbers on every machine.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    /// From `low` to `high`, both included.
-    fn between(&mut self, low: i64, high: i64) -> i64 {
-        low + (self.roll() % (high - low + 1) as u64) as i64
-    }
-
-    fn chance(&mut self, percent: u64) -> bool {
-        self.roll() % 100 < percent
-    }
-
-    fn pick<T: Copy>(&mut self, from: &[T]) -> T {
-        from[(self.roll() % from.len() as u64) as usize]
-    }
-}
 
 /// A stroke of the contour seen from A: depth `h` into the work, way `w` along the cut, thousandths.
 #[derive(Clone, Copy, Debug)]
@@ -72,7 +48,7 @@ impl Stroke {
 /// A contour that goes on along the cut all the time; with `pockets` it also goes down.
 fn strokes(dice: &mut Dice, mut at: (i64, i64), pockets: bool) -> Vec<Stroke> {
     let mut out = Vec::new();
-    for _ in 0..dice.between(1, 8) {
+    for _ in 0..dice.whole(1, 8) {
         let stroke = stroke(dice, at, pockets);
         let is_in_range = (-300..40_000).contains(&stroke.to.0);
         if stroke.to != stroke.from && is_in_range {
@@ -83,7 +59,7 @@ fn strokes(dice: &mut Dice, mut at: (i64, i64), pockets: bool) -> Vec<Stroke> {
     if out.iter().all(|stroke| stroke.to.1 == stroke.from.1) {
         out.push(Stroke { from: at, to: (at.0, at.1 + 5_000), arc: None });
     }
-    if dice.chance(60) && at.0 > 0 {
+    if dice.percent(60) && at.0 > 0 {
         let from = out.last().map_or(at, |stroke| stroke.to);
         out.push(Stroke { from, to: (0, from.1), arc: None });
     }
@@ -91,12 +67,12 @@ fn strokes(dice: &mut Dice, mut at: (i64, i64), pockets: bool) -> Vec<Stroke> {
 }
 
 fn stroke(dice: &mut Dice, (h, w): (i64, i64), pockets: bool) -> Stroke {
-    let size = dice.between(1, 900);
-    let (a, b) = (dice.between(1, 9) * size, dice.between(1, 9) * size);
+    let size = dice.whole(1, 900);
+    let (a, b) = (dice.whole(1, 9) * size, dice.whole(1, 9) * size);
     let line = |to| Stroke { from: (h, w), to, arc: None };
     let arc = |to, centre, is_deep| Stroke { from: (h, w), to, arc: Some((centre, is_deep)) };
     let r = 5 * size;
-    match dice.between(0, if pockets { 14 } else { 5 }) {
+    match dice.whole(0, if pockets { 14 } else { 5 }) {
         0 => line((h, w + 10 * size)),
         1 => line((h - r, w)),
         2 => line((h - a, w + b)),
@@ -162,34 +138,34 @@ impl Case {
     }
 
     fn any(dice: &mut Dice, pockets: bool) -> Self {
-        let approach = match dice.between(0, if pockets { 3 } else { 0 }) {
+        let approach = match dice.whole(0, if pockets { 3 } else { 0 }) {
             2 => Approach::Over,
             3 => Approach::Touching,
-            _ => Approach::Open { is_rapid: dice.chance(50) },
+            _ => Approach::Open { is_rapid: dice.percent(50) },
         };
         let strokes = match approach {
             Approach::Open { .. } => {
-                let bottom = dice.between(500, 30_000);
+                let bottom = dice.whole(500, 30_000);
                 strokes(dice, (bottom, 0), pockets)
             }
             Approach::Over => {
-                let begin = dice.between(10, 9_000);
+                let begin = dice.whole(10, 9_000);
                 strokes(dice, (0, begin), pockets)
             }
             Approach::Touching => {
                 // The first stroke slants, or it would be the approach.
                 let first =
-                    Stroke { from: (0, 0), to: (dice.between(1, 9_000), dice.between(1, 9_000)), arc: None };
+                    Stroke { from: (0, 0), to: (dice.whole(1, 9_000), dice.whole(1, 9_000)), arc: None };
                 let mut all = vec![first];
                 all.extend(strokes(dice, first.to, pockets));
                 all
             }
         };
         Self {
-            along: dice.pick(&[CutAlong::Z, CutAlong::X]),
-            origin: (dice.between(-80_000, 80_000), dice.between(-80_000, 80_000)),
-            su: dice.pick(&[-1, 1]),
-            sv: dice.pick(&[-1, 1]),
+            along: *dice.pick(&[CutAlong::Z, CutAlong::X]),
+            origin: (dice.whole(-80_000, 80_000), dice.whole(-80_000, 80_000)),
+            su: *dice.pick(&[-1, 1]),
+            sv: *dice.pick(&[-1, 1]),
             approach,
             strokes,
         }
@@ -233,35 +209,35 @@ impl Case {
         let deepest = self.strokes.iter().map(|stroke| stroke.from.0.max(stroke.to.0)).max().unwrap_or(0);
         // Now and then a level meets a flat of the figure.
         let flats = self.strokes.iter().filter(|stroke| stroke.from.0 == stroke.to.0 && stroke.from.0 > 0);
-        let flat = flats.map(|stroke| stroke.from.0 / dice.between(1, 6)).next_back();
+        let flat = flats.map(|stroke| stroke.from.0 / dice.whole(1, 6)).next_back();
         let depth = match flat {
-            Some(flat) if dice.chance(40) => flat.max(deepest / 40 + 1),
-            _ => dice.between(50, 4_000).max(deepest / 20),
+            Some(flat) if dice.percent(40) => flat.max(deepest / 40 + 1),
+            _ => dice.whole(50, 4_000).max(deepest / 20),
         };
         // Allowances lead away from the work.
-        let (au, av) = (dice.between(0, 900), -dice.between(0, 300));
+        let (au, av) = (dice.whole(0, 900), -dice.whole(0, 300));
         let (au, av) = (-self.su * au, self.sv * av);
         let (x, z) = if self.along == CutAlong::Z { (au, av) } else { (av, au) };
         let rough = RoughRequest {
             context: context(self.place((0, 0))),
             along: self.along,
             depth: thousandths(depth),
-            escape: thousandths(if dice.chance(80) { dice.between(0, 800) } else { dice.between(0, 8_000) }),
+            escape: thousandths(if dice.percent(80) { dice.whole(0, 800) } else { dice.whole(0, 8_000) }),
             allowance_x: Radius(thousandths(x)),
             allowance_z: thousandths(z),
-            coincident: dice.pick(&[Coincident::Through, Coincident::Stop]),
+            coincident: *dice.pick(&[Coincident::Through, Coincident::Stop]),
             level_origin: LevelOrigin::ShiftedStart,
-            escape_speed: dice.pick(&[EscapeSpeed::Feed, EscapeSpeed::Rapid]),
-            semi_finish: dice.chance(80),
+            escape_speed: *dice.pick(&[EscapeSpeed::Feed, EscapeSpeed::Rapid]),
+            semi_finish: dice.percent(80),
             monotony: Monotony::Ignore,
         };
         PocketRequest {
             rough,
             tolerance: Tolerance::EXACT,
-            clearance: thousandths(dice.pick(&[0, 0, 200, 1_000])),
-            hump: dice.pick(&[Hump::AlongContour, Hump::ExtraLevel]),
-            bottom_escape: dice.pick(&[BottomEscape::Follow, BottomEscape::Diagonal]),
-            lift_speed: dice.pick(&[EscapeSpeed::Feed, EscapeSpeed::Rapid]),
+            clearance: thousandths(*dice.pick(&[0, 0, 200, 1_000])),
+            hump: *dice.pick(&[Hump::AlongContour, Hump::ExtraLevel]),
+            bottom_escape: *dice.pick(&[BottomEscape::Follow, BottomEscape::Diagonal]),
+            lift_speed: *dice.pick(&[EscapeSpeed::Feed, EscapeSpeed::Rapid]),
         }
     }
 }
@@ -313,7 +289,7 @@ impl<'a> Bar<'a> {
                 if high <= low {
                     break;
                 }
-                let w = low + (high - low) * dice.between(0, 1_000) as f64 / 1e3;
+                let w = low + (high - low) * dice.whole(0, 1_000) as f64 / 1e3;
                 for w in [w - NEAR, w, w + NEAR] {
                     let figure = depth(w).expect("within the contour");
                     let near = [w - NEAR, w, w + NEAR].map(|w| stroke.depth_at(w));
@@ -438,7 +414,7 @@ fn assert_arc_closes(from: Position<WorkTip>, to: Position<WorkTip>, step: &Cycl
 
 #[test]
 fn roughing_with_pockets_leaves_the_figure_and_nothing_else() {
-    let mut dice = Dice(0x9E37_79B9_7F4A_7C15);
+    let mut dice = Dice::new(0x9E37_79B9_7F4A_7C15);
     let mut cuts = 0;
     for _ in 0..10_000 {
         let case = Case::new(&mut dice, true);
@@ -452,7 +428,7 @@ fn roughing_with_pockets_leaves_the_figure_and_nothing_else() {
 
 #[test]
 fn roughing_without_pockets_leaves_the_figure_and_nothing_else() {
-    let mut dice = Dice(0x0BAD_CAFE);
+    let mut dice = Dice::new(0x0BAD_CAFE);
     for _ in 0..4_000 {
         let case = Case::new(&mut dice, false);
         let request = case.request(&mut dice);
@@ -464,7 +440,7 @@ fn roughing_without_pockets_leaves_the_figure_and_nothing_else() {
 
 /// What roughing leaves for the pass that takes it off, away from the work: X, Z.
 fn left_for_semi_finish(case: &Case, dice: &mut Dice) -> (Radius, Length) {
-    let (u, v) = (-case.su * dice.between(0, 700), -case.sv * dice.between(0, 300));
+    let (u, v) = (-case.su * dice.whole(0, 700), -case.sv * dice.whole(0, 300));
     let (x, z) = if case.along == CutAlong::Z { (u, v) } else { (v, u) };
     (Radius(thousandths(x)), thousandths(z))
 }
@@ -503,7 +479,7 @@ fn check_semi_finish(
 
 #[test]
 fn a_semi_finishing_pass_takes_off_what_roughing_has_left_for_it() {
-    let mut dice = Dice(0x5E_ED_0F_1A_7E);
+    let mut dice = Dice::new(0x5E_ED_0F_1A_7E);
     for _ in 0..3_000 {
         let case = Case::new(&mut dice, false);
         let mut request = case.request(&mut dice);
@@ -517,7 +493,7 @@ fn a_semi_finishing_pass_takes_off_what_roughing_has_left_for_it() {
 
 #[test]
 fn a_semi_finishing_pass_takes_off_what_roughing_of_pockets_has_left_for_it() {
-    let mut dice = Dice(0x0C_0F_FE_E0);
+    let mut dice = Dice::new(0x0C_0F_FE_E0);
     for _ in 0..5_000 {
         let case = Case::new(&mut dice, true);
         let mut request = case.request(&mut dice);
@@ -531,7 +507,7 @@ fn a_semi_finishing_pass_takes_off_what_roughing_of_pockets_has_left_for_it() {
 
 #[test]
 fn without_pockets_both_types_cut_the_same_levels() {
-    let mut dice = Dice(2_718_281_828);
+    let mut dice = Dice::new(2_718_281_828);
     for _ in 0..2_000 {
         let case = Case::new(&mut dice, false);
         let request = case.request(&mut dice);
@@ -546,7 +522,7 @@ fn without_pockets_both_types_cut_the_same_levels() {
 
 #[test]
 fn a_mirrored_or_shifted_figure_with_pockets_gives_mirrored_or_shifted_moves() {
-    let mut dice = Dice(4_711);
+    let mut dice = Dice::new(4_711);
     for _ in 0..1_500 {
         let case = Case::new(&mut dice, true);
         let request = case.request(&mut dice);
@@ -554,14 +530,21 @@ fn a_mirrored_or_shifted_figure_with_pockets_gives_mirrored_or_shifted_moves() {
         let seen = |case: &Case, request: &PocketRequest, moves: &[CycleMove]| -> Vec<_> {
             let start = request.rough.context.start;
             let seen = |step: &CycleMove| case.seen(step.action.end_point().expect("a move"), start);
-            moves.iter().map(|step| (seen(step), step.phase, step.pass, step.element)).collect()
+            let mut moves: Vec<_> =
+                moves.iter().map(|step| (seen(step), step.phase, step.pass, step.element)).collect();
+            // A cut of one step may round to none on the other side.
+            moves.dedup_by(|next, before| {
+                let steps = (next.0.0 - before.0.0).abs().max((next.0.1 - before.0.1).abs());
+                next.1 == Phase::Cut && steps <= 1.0
+            });
+            moves
         };
         let expected = seen(&case, &request, &moves);
         // The other way along the depth axis, along the cut, somewhere else.
         let other = Case {
             su: -case.su,
-            sv: if dice.chance(50) { -case.sv } else { case.sv },
-            origin: (case.origin.0 + dice.between(-9_000, 9_000), dice.between(-90_000, 90_000)),
+            sv: if dice.percent(50) { -case.sv } else { case.sv },
+            origin: (case.origin.0 + dice.whole(-9_000, 9_000), dice.whole(-90_000, 90_000)),
             ..case.clone()
         };
         let (x, z) = (request.rough.allowance_x, request.rough.allowance_z);
@@ -591,7 +574,7 @@ fn a_mirrored_or_shifted_figure_with_pockets_gives_mirrored_or_shifted_moves() {
 
 #[test]
 fn only_what_turns_back_along_the_cut_is_refused_with_pockets() {
-    let mut dice = Dice(99);
+    let mut dice = Dice::new(99);
     for _ in 0..1_000 {
         let mut case = Case::new(&mut dice, true);
         assert_eq!(turn_back_fault(&case.figure(), case.along, Tolerance::EXACT), None, "{case:?}");

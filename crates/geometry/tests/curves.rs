@@ -2,32 +2,13 @@
 
 use std::f64::consts::{PI, TAU};
 
+use turnwright_dice::Dice;
 use turnwright_geometry::{
     Bend, Conic, CurvePath, Point, circle_through, ellipse_centre, parabola_vertex, sweep_rad,
 };
 
-/// xorshift64*, seeded: a failure names its case.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * ((self.next() >> 11) as f64 / (1u64 << 53) as f64)
-    }
-
-    fn chance(&mut self) -> bool {
-        self.next().is_multiple_of(2)
-    }
-
-    fn place(&mut self) -> Point {
-        Point::new(self.between(-50.0, 150.0), self.between(-300.0, 50.0))
-    }
+fn place(dice: &mut Dice) -> Point {
+    Point::new(dice.between(-50.0, 150.0), dice.between(-300.0, 50.0))
 }
 
 /// Along and across a direction, from `origin`: the frame of a conic, written out once more.
@@ -90,12 +71,12 @@ fn distance_to(place: Point, from: Point, to: Point, bend: Option<Bend>) -> f64 
 
 #[test]
 fn ellipses_satisfy_their_equation() {
-    let mut random = Random(5);
+    let mut dice = Dice::new(5);
     let mut made = 0;
     while made < 1_000 {
-        let (start, end) = (random.place(), random.place());
-        let (along, across) = (random.between(0.5, 200.0), random.between(0.5, 200.0));
-        let (tilt, clockwise) = (random.between(-PI, TAU), random.chance());
+        let (start, end) = (place(&mut dice), place(&mut dice));
+        let (along, across) = (dice.between(0.5, 200.0), dice.between(0.5, 200.0));
+        let (tilt, clockwise) = (dice.between(-PI, TAU), dice.one_in(2));
         let Ok(centre) = ellipse_centre(start, end, (along, across), tilt, clockwise, 0.0) else { continue };
         made += 1;
         let conic = Conic::Ellipse { along_mm: along, across_mm: across };
@@ -116,12 +97,12 @@ fn ellipses_satisfy_their_equation() {
 
 #[test]
 fn parabolas_satisfy_their_equation() {
-    let mut random = Random(7);
+    let mut dice = Dice::new(7);
     let mut made = 0;
     while made < 1_000 {
-        let (start, end) = (random.place(), random.place());
-        let (parameter, tilt) = (random.between(0.5, 300.0), random.between(-PI, TAU));
-        let clockwise = random.chance();
+        let (start, end) = (place(&mut dice), place(&mut dice));
+        let (parameter, tilt) = (dice.between(0.5, 300.0), dice.between(-PI, TAU));
+        let clockwise = dice.one_in(2);
         let Some((vertex, opens_back)) = parabola_vertex(start, end, parameter, tilt, clockwise) else {
             continue;
         };
@@ -144,9 +125,9 @@ fn parabolas_satisfy_their_equation() {
 
 #[test]
 fn circles_pass_through_their_three_points_in_order() {
-    let mut random = Random(11);
+    let mut dice = Dice::new(11);
     for _ in 0..20_000 {
-        let (start, middle, end) = (random.place(), random.place(), random.place());
+        let (start, middle, end) = (place(&mut dice), place(&mut dice), place(&mut dice));
         if area(start, middle, end).abs() < 10.0 {
             continue;
         }

@@ -1,38 +1,25 @@
-//! Laws of broken corners on random paths: fillets touch both elements, chamfers are as long as asked for.
+//! Laws of broken corners on dice paths: fillets touch both elements, chamfers are as long as asked for.
 
+use turnwright_dice::Dice;
 use turnwright_geometry::{Bend, Breaking, Corner, CornerFault, Point, Segment, break_corner};
 
-/// xorshift64*, the same everywhere.
-struct Random(u64);
+fn point(dice: &mut Dice) -> Point {
+    Point::new(dice.between(0.0, 50.0), dice.between(-80.0, 20.0))
+}
 
-impl Random {
-    /// Between `low` and `high`.
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        let bits = self.0.wrapping_mul(2_685_821_657_736_338_717) >> 11;
-        low + (high - low) * bits as f64 / (1u64 << 53) as f64
+/// An element between two points: a line, or an arc of less than three quarters of a turn.
+fn element(dice: &mut Dice, start: Point, end: Point) -> Segment {
+    let kind = dice.between(0.0, 3.0);
+    if kind < 1.0 {
+        return Segment { start, end, bend: None };
     }
-
-    fn point(&mut self) -> Point {
-        Point::new(self.between(0.0, 50.0), self.between(-80.0, 20.0))
-    }
-
-    /// An element between two points: a line, or an arc of less than three quarters of a turn.
-    fn element(&mut self, start: Point, end: Point) -> Segment {
-        let kind = self.between(0.0, 3.0);
-        if kind < 1.0 {
-            return Segment { start, end, bend: None };
-        }
-        let half = start.distance(end) / 2.0;
-        let rise = self.between(-0.4, 3.0) * half;
-        let (z, x) = ((end.z - start.z) / (2.0 * half), (end.x - start.x) / (2.0 * half));
-        let clockwise = kind < 2.0;
-        let side = if clockwise { -rise } else { rise };
-        let centre = Point::new((start.x + end.x) / 2.0 + side * z, (start.z + end.z) / 2.0 - side * x);
-        Segment { start, end, bend: Some(Bend { centre, clockwise }) }
-    }
+    let half = start.distance(end) / 2.0;
+    let rise = dice.between(-0.4, 3.0) * half;
+    let (z, x) = ((end.z - start.z) / (2.0 * half), (end.x - start.x) / (2.0 * half));
+    let clockwise = kind < 2.0;
+    let side = if clockwise { -rise } else { rise };
+    let centre = Point::new((start.x + end.x) / 2.0 + side * z, (start.z + end.z) / 2.0 - side * x);
+    Segment { start, end, bend: Some(Bend { centre, clockwise }) }
 }
 
 /// How far a point is from the line or circle of an element.
@@ -80,13 +67,13 @@ fn check_fillet(first: &Segment, second: &Segment, radius: f64, corner: &Corner)
 
 #[test]
 fn random_corners_are_broken_as_asked_for() {
-    let mut random = Random(20_261_122);
+    let mut dice = Dice::new(20_261_122);
     let (mut fillets, mut chamfers, mut refused) = (0, 0, 0);
     for _ in 0..20_000 {
-        let (start, corner_point, end) = (random.point(), random.point(), random.point());
-        let first = random.element(start, corner_point);
-        let second = random.element(corner_point, end);
-        let size = random.between(0.05, 20.0);
+        let (start, corner_point, end) = (point(&mut dice), point(&mut dice), point(&mut dice));
+        let first = element(&mut dice, start, corner_point);
+        let second = element(&mut dice, corner_point, end);
+        let size = dice.between(0.05, 20.0);
         for breaking in
             [Breaking::Fillet(size), Breaking::ChamferFromCorner(size), Breaking::ChamferOfLength(size)]
         {
@@ -123,12 +110,12 @@ fn a_corner_and_its_way_back_are_the_same() {
         end: element.start,
         bend: element.bend.map(|bend| Bend { clockwise: !bend.clockwise, ..bend }),
     };
-    let mut random = Random(7);
+    let mut dice = Dice::new(7);
     let mut compared = 0;
     for _ in 0..5_000 {
-        let (start, corner, end) = (random.point(), random.point(), random.point());
-        let (first, second) = (random.element(start, corner), random.element(corner, end));
-        let radius = random.between(0.05, 10.0);
+        let (start, corner, end) = (point(&mut dice), point(&mut dice), point(&mut dice));
+        let (first, second) = (element(&mut dice, start, corner), element(&mut dice, corner, end));
+        let radius = dice.between(0.05, 10.0);
         let forth = break_corner(&first, &second, Breaking::Fillet(radius), 0.01, 1e-9);
         let back = break_corner(&turned(&second), &turned(&first), Breaking::Fillet(radius), 0.01, 1e-9);
         if let (Ok(forth), Ok(back)) = (forth, back) {

@@ -1,4 +1,4 @@
-//! Laws of nose compensation on random contours of lines and arcs: the nose touches what it cuts and never enters it,
+//! Laws of nose compensation on dice contours of lines and arcs: the nose touches what it cuts and never enters it,
 //! and a contour that is mirrored, shifted, reversed or written in inches gives the same path mirrored, shifted,
 //! reversed or in millimetres.
 
@@ -9,31 +9,8 @@ use std::sync::OnceLock;
 use support::{Conditions, Run, run_on};
 use turnwright_canon::{Action, Shape, Turn};
 use turnwright_control::Control;
+use turnwright_dice::Dice;
 use turnwright_geometry::{Bend, Point, Segment, centre_from_radius, sweep_rad};
-
-/// xorshift64*, the same everywhere.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(2_685_821_657_736_338_717)
-    }
-
-    fn part(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.part()
-    }
-
-    fn chance(&mut self, one_in: u64) -> bool {
-        self.next().is_multiple_of(one_in)
-    }
-}
 
 /// A contour: where it starts, and its elements: end, radius of an arc (below zero more than half a circle), clockwise.
 #[derive(Clone, Debug)]
@@ -57,17 +34,17 @@ fn on_grid(point: Point) -> Point {
 }
 
 /// A contour whose directions wander, some corners tangent, some sharp; elements as short as the nose or much longer.
-fn contour(random: &mut Random, sharpest_deg: f64, shortest_mm: f64) -> Contour {
-    let radius_mm = [0.2, 0.4, 0.8, 1.2][(random.next() % 4) as usize];
-    let mut at = on_grid(Point::new(random.between(20.0, 60.0), random.between(-20.0, 20.0)));
+fn contour(dice: &mut Dice, sharpest_deg: f64, shortest_mm: f64) -> Contour {
+    let radius_mm = [0.2, 0.4, 0.8, 1.2][(dice.roll() % 4) as usize];
+    let mut at = on_grid(Point::new(dice.between(20.0, 60.0), dice.between(-20.0, 20.0)));
     let start = at;
-    let mut heading = random.between(0.0, 360.0);
+    let mut heading = dice.between(0.0, 360.0);
     let mut elements = Vec::new();
-    for _ in 0..2 + random.next() % 6 {
-        let length = random.between(shortest_mm, 12.0);
-        if random.chance(3) {
-            let turn = random.between(10.0, 170.0);
-            let clockwise = random.chance(2);
+    for _ in 0..2 + dice.roll() % 6 {
+        let length = dice.between(shortest_mm, 12.0);
+        if dice.one_in(3) {
+            let turn = dice.between(10.0, 170.0);
+            let clockwise = dice.one_in(2);
             let arc_radius = length / 2.0 / (turn / 2.0).to_radians().sin();
             let sense = if clockwise { -1.0 } else { 1.0 };
             let chord = (heading + sense * turn / 2.0).to_radians();
@@ -81,11 +58,11 @@ fn contour(random: &mut Random, sharpest_deg: f64, shortest_mm: f64) -> Contour 
             at = on_grid(Point::new(at.x + length * angle.sin(), at.z + length * angle.cos()));
             elements.push((at, None));
         }
-        if !random.chance(4) {
-            heading += random.between(-sharpest_deg, sharpest_deg);
+        if !dice.one_in(4) {
+            heading += dice.between(-sharpest_deg, sharpest_deg);
         }
     }
-    Contour { start, elements, left: random.chance(2), radius_mm, tip: (random.next() % 10) as u8 }
+    Contour { start, elements, left: dice.one_in(2), radius_mm, tip: (dice.roll() % 10) as u8 }
 }
 
 impl Contour {
@@ -266,10 +243,10 @@ fn comes_back(contour: &Contour) -> bool {
 
 #[test]
 fn the_nose_touches_what_it_cuts_and_never_enters_it() {
-    let mut random = Random(11);
+    let mut dice = Dice::new(11);
     let (mut checked, mut refused, mut clear) = (0, 0, 0);
     for round in 0..10_000 {
-        let contour = contour(&mut random, 100.0, 4.0);
+        let contour = contour(&mut dice, 100.0, 4.0);
         let run = contour.run(1.0, 3);
         if let Some(alarm) = &run.alarm {
             assert!(is_refusal(alarm.key), "{contour:?}\n{alarm:?}");
@@ -311,10 +288,10 @@ fn is_refusal(key: &str) -> bool {
 
 #[test]
 fn elements_shorter_than_the_nose_end_in_a_path_or_an_alarm() {
-    let mut random = Random(12);
+    let mut dice = Dice::new(12);
     let (mut cut, mut refused) = (0, 0);
     for _ in 0..6_000 {
-        let contour = contour(&mut random, 175.0, 0.003);
+        let contour = contour(&mut dice, 175.0, 0.003);
         let run = contour.run(1.0, 3);
         match &run.alarm {
             Some(alarm) => {
@@ -374,10 +351,10 @@ fn assert_same(
 
 #[test]
 fn a_mirrored_or_shifted_contour_has_a_mirrored_or_shifted_path() {
-    let mut random = Random(13);
+    let mut dice = Dice::new(13);
     let mut checked = 0;
     for _ in 0..2_000 {
-        let contour = contour(&mut random, 140.0, 1.0);
+        let contour = contour(&mut dice, 140.0, 1.0);
         let run = contour.run(1.0, 3);
         let flip = |point: Point| Point::new(point.x, -point.z);
         let tip = [0, 2, 1, 4, 3, 7, 6, 5, 8, 9][usize::from(contour.tip)];
@@ -406,10 +383,10 @@ fn a_mirrored_or_shifted_contour_has_a_mirrored_or_shifted_path() {
 
 #[test]
 fn a_contour_cut_backwards_on_the_other_side_has_the_same_path_backwards() {
-    let mut random = Random(14);
+    let mut dice = Dice::new(14);
     let mut checked = 0;
     for _ in 0..3_000 {
-        let contour = contour(&mut random, 140.0, 4.0);
+        let contour = contour(&mut dice, 140.0, 4.0);
         let run = contour.run(1.0, 3);
         let mut ends: Vec<Point> = vec![contour.start];
         ends.extend(contour.elements.iter().map(|(end, _)| *end));
@@ -445,10 +422,10 @@ fn a_contour_cut_backwards_on_the_other_side_has_the_same_path_backwards() {
 fn inches_and_millimetres_give_the_same_path() {
     /// Rounding to an increment of 0.0001 inch.
     const INCH_NEAR_MM: f64 = 0.004;
-    let mut random = Random(15);
+    let mut dice = Dice::new(15);
     let mut checked = 0;
     for _ in 0..1_500 {
-        let mut contour = contour(&mut random, 110.0, 4.0);
+        let mut contour = contour(&mut dice, 110.0, 4.0);
         // Places that both systems can write: hundredths of an inch.
         let written = |mm: f64| (mm / 0.254).round() * 0.254;
         let grid = |point: Point| Point::new(written(point.x), written(point.z));

@@ -21,26 +21,7 @@ use std::sync::OnceLock;
 use support::{Conditions, run_on};
 use turnwright_canon::{Action, Shape};
 use turnwright_control::Control;
-
-/// xorshift64*, the same everywhere.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(2_685_821_657_736_338_717)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * ((self.next() >> 11) as f64 / (1u64 << 53) as f64)
-    }
-
-    fn chance(&mut self, one_in: u64) -> bool {
-        self.next().is_multiple_of(one_in)
-    }
-}
+use turnwright_dice::Dice;
 
 /// 0.03 inch: LinuxCNC reads its tool table in inches.
 const RADIUS_MM: f64 = 0.762;
@@ -69,11 +50,11 @@ fn rounded(mm: f64) -> f64 {
     (mm * 1000.0).round() / 1000.0
 }
 
-fn contour(random: &mut Random) -> Contour {
-    let left = random.chance(2);
+fn contour(dice: &mut Dice) -> Contour {
+    let left = dice.one_in(2);
     let to_nose = if left { 1.0 } else { -1.0 };
-    let mut heading = random.between(0.0, 360.0);
-    let mut at = (rounded(random.between(40.0, 60.0)), rounded(random.between(-20.0, 20.0)));
+    let mut heading = dice.between(0.0, 360.0);
+    let mut at = (rounded(dice.between(40.0, 60.0)), rounded(dice.between(-20.0, 20.0)));
     let ahead = |at: (f64, f64), heading: f64, way: f64| {
         let angle = heading.to_radians();
         (rounded(at.0 + way * angle.sin()), rounded(at.1 + way * angle.cos()))
@@ -82,12 +63,12 @@ fn contour(random: &mut Random) -> Contour {
     let mut elements = Vec::new();
     let mut turned = 0.0;
     while elements.len() < 6 && turned < 120.0 {
-        let length = random.between(5.0, 11.0);
-        let turn = random.between(15.0, 60.0);
+        let length = dice.between(5.0, 11.0);
+        let turn = dice.between(15.0, 60.0);
         let is_first = elements.is_empty();
-        if !is_first && random.chance(2) {
+        if !is_first && dice.one_in(2) {
             // Towards the nose or away from it; tangent to what lies before.
-            let sense = if random.chance(2) { to_nose } else { -to_nose };
+            let sense = if dice.one_in(2) { to_nose } else { -to_nose };
             let radius = length / 2.0 / (turn / 2.0).to_radians().sin();
             at = ahead(at, heading + sense * turn / 2.0, length);
             elements.push((at, Some((rounded(radius), sense < 0.0))));
@@ -98,12 +79,12 @@ fn contour(random: &mut Random) -> Contour {
             elements.push((at, None));
         }
         // What follows an arc is far enough from tangent, or a line: rounded ends turn an arc a little away.
-        let corner = random.between(8.0, 60.0);
+        let corner = dice.between(8.0, 60.0);
         heading += to_nose * corner;
         turned += corner;
     }
     let lead_out = ahead(at, heading + to_nose * 60.0, 9.0);
-    Contour { left, tip: (random.next() % 10) as u8, lead_in, start, elements, lead_out }
+    Contour { left, tip: (dice.roll() % 10) as u8, lead_in, start, elements, lead_out }
 }
 
 impl Contour {
@@ -199,10 +180,10 @@ fn inside_corners_and_tangent_joints_are_those_of_linuxcnc() {
     );
     let folder = std::env::temp_dir().join(format!("turnwright-rs274-{}", std::process::id()));
     fs::create_dir_all(&folder).expect("writable");
-    let mut random = Random(274);
+    let mut dice = Dice::new(274);
     let (mut compared, mut refused) = (0, 0);
     for round in 0..200 {
-        let contour = contour(&mut random);
+        let contour = contour(&mut dice);
         let told = || format!("round {round} tip {}\n{}", contour.tip, contour.text(2.0, "", "M30"));
         let (ours, theirs) = match (contour.ours(), contour.theirs(&folder)) {
             (Ok(ours), Ok(theirs)) => (ours, theirs),

@@ -5,27 +5,16 @@ mod support;
 
 use support::{Conditions, run};
 use turnwright_canon::{Action, Shape, Turn};
+use turnwright_dice::Dice;
 use turnwright_units::{Position, WorkTip};
-
-/// xorshift64*, the same everywhere.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(2_685_821_657_736_338_717)
-    }
-
-    /// Thousandths between `low` and `high`.
-    fn mm(&mut self, low: i64, high: i64) -> f64 {
-        (low * 1_000 + (self.next() % ((high - low) as u64 * 1_000)) as i64) as f64 / 1_000.0
-    }
-}
 
 /// X as a radius, and Z.
 type Place = (f64, f64);
+
+/// Thousandths between `low` and `high`.
+fn mm(dice: &mut Dice, low: i64, high: i64) -> f64 {
+    dice.whole(low * 1_000, high * 1_000 - 1) as f64 / 1_000.0
+}
 
 fn place(position: Position<WorkTip>) -> Place {
     (position.x.to_mm(), position.z.to_mm())
@@ -69,17 +58,17 @@ fn moves(control: &str, start: Place, corner: Place, word: &str, end: Place) -> 
     Some(moves.map(|command| command.action.clone()).collect())
 }
 
-fn random_path(random: &mut Random) -> [Place; 3] {
-    [(); 3].map(|()| (random.mm(1, 60), random.mm(-90, 10)))
+fn random_path(dice: &mut Dice) -> [Place; 3] {
+    [(); 3].map(|()| (mm(dice, 1, 60), mm(dice, -90, 10)))
 }
 
 #[test]
 fn a_fillet_touches_both_lines() {
-    let mut random = Random(1);
+    let mut dice = Dice::new(1);
     let mut checked = 0;
     for round in 0..3_000 {
-        let [start, corner, end] = random_path(&mut random);
-        let radius = random.mm(0, 12) + 0.001;
+        let [start, corner, end] = random_path(&mut dice);
+        let radius = mm(&mut dice, 0, 12) + 0.001;
         let (control, word) = if round % 2 == 0 {
             ("fanuc-0i-tf", format!(",R{radius:.3}"))
         } else {
@@ -117,11 +106,11 @@ fn a_fillet_touches_both_lines() {
 
 #[test]
 fn a_chamfer_has_the_legs_that_were_written() {
-    let mut random = Random(2);
+    let mut dice = Dice::new(2);
     let mut checked = 0;
     for round in 0..3_000 {
-        let [start, corner, end] = random_path(&mut random);
-        let size = random.mm(0, 12) + 0.01;
+        let [start, corner, end] = random_path(&mut dice);
+        let size = mm(&mut dice, 0, 12) + 0.01;
         let is_length = round % 2 == 1;
         let (control, word) = if is_length {
             ("gsk-980tdc", format!("L{size:.3}"))
@@ -144,10 +133,10 @@ fn a_chamfer_has_the_legs_that_were_written() {
 
 #[test]
 fn a_line_given_by_its_angle_is_the_line_given_by_its_end() {
-    let mut random = Random(3);
+    let mut dice = Dice::new(3);
     let mut checked = 0;
     for _ in 0..1_000 {
-        let [start, corner, end] = random_path(&mut random);
+        let [start, corner, end] = random_path(&mut dice);
         let angle = |from: Place, to: Place| (to.0 - from.0).atan2(to.1 - from.1).to_degrees();
         let (one, other) = (angle(start, corner), angle(corner, end));
         let turned = (one - other).to_radians().sin().abs();

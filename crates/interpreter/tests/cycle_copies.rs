@@ -6,27 +6,7 @@ mod support;
 
 use support::{Conditions, run};
 use turnwright_canon::Action;
-
-/// Marsaglia's xorshift: the same numbers on every machine.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    /// From `low` to `high`, both included.
-    fn between(&mut self, low: i64, high: i64) -> i64 {
-        low + (self.roll() % (high - low + 1) as u64) as i64
-    }
-
-    fn chance(&mut self, percent: u64) -> bool {
-        self.roll() % 100 < percent
-    }
-}
+use turnwright_dice::Dice;
 
 const UNIT_NM: i64 = 127_000;
 
@@ -108,7 +88,7 @@ fn moves(text: &str, conditions: &Conditions) -> Vec<(&'static str, (i64, i64))>
 fn styles(dice: &mut Dice) -> [Style; 5] {
     let plain = Style::default();
     [
-        Style { shift: (dice.between(-20, 80), dice.between(-300, 300)), ..plain },
+        Style { shift: (dice.whole(-20, 80), dice.whole(-300, 300)), ..plain },
         Style { is_mirrored: true, ..plain },
         Style { is_inch: true, ..plain },
         Style { is_incremental: true, ..plain },
@@ -148,15 +128,15 @@ fn assert_copies(
 
 #[test]
 fn grooves() {
-    let mut dice = Dice(4_711);
+    let mut dice = Dice::new(4_711);
     for _ in 0..300 {
-        let is_face = dice.chance(50);
-        let start = (dice.between(100, 300), dice.between(-200, 50));
-        let sign = |dice: &mut Dice| if dice.chance(50) { 1 } else { -1 };
-        let (x_way, z_way) = (sign(&mut dice) * dice.between(8, 80), sign(&mut dice) * dice.between(8, 80));
+        let is_face = dice.percent(50);
+        let start = (dice.whole(100, 300), dice.whole(-200, 50));
+        let sign = |dice: &mut Dice| if dice.percent(50) { 1 } else { -1 };
+        let (x_way, z_way) = (sign(&mut dice) * dice.whole(8, 80), sign(&mut dice) * dice.whole(8, 80));
         let end = (start.0 + x_way, start.1 + z_way);
-        let (cross, lengthwise) = (dice.between(2, 40), dice.between(2, 40));
-        let (back, relief) = (dice.between(0, 3), if dice.chance(30) { dice.between(1, 3) } else { 0 });
+        let (cross, lengthwise) = (dice.whole(2, 40), dice.whole(2, 40));
+        let (back, relief) = (dice.whole(0, 3), if dice.percent(30) { dice.whole(1, 3) } else { 0 });
         let code = if is_face { "G74" } else { "G75" };
         let conditions = Conditions::on("fanuc-0i-tf");
         let back_mm = Style::default().length(back);
@@ -177,15 +157,15 @@ fn grooves() {
 
 #[test]
 fn threads() {
-    let mut dice = Dice(1_234_567);
+    let mut dice = Dice::new(1_234_567);
     for _ in 0..200 {
-        let is_inside = dice.chance(40);
-        let start = (dice.between(100, 300), dice.between(30, 60));
-        let out = dice.between(20, 30);
-        let end = (start.0 + if is_inside { out } else { -out }, dice.between(-200, -40));
-        let (height, first, least) = (dice.between(6, 12), dice.between(2, 4), dice.between(0, 2));
-        let (allowance, taper) = (dice.between(0, 1), dice.between(-3, 3));
-        let (run_out, angle) = (dice.between(0, 15), [0, 29, 60][dice.between(0, 2) as usize]);
+        let is_inside = dice.percent(40);
+        let start = (dice.whole(100, 300), dice.whole(30, 60));
+        let out = dice.whole(20, 30);
+        let end = (start.0 + if is_inside { out } else { -out }, dice.whole(-200, -40));
+        let (height, first, least) = (dice.whole(6, 12), dice.whole(2, 4), dice.whole(0, 2));
+        let (allowance, taper) = (dice.whole(0, 1), dice.whole(-3, 3));
+        let (run_out, angle) = (dice.whole(0, 15), [0, 29, 60][dice.whole(0, 2) as usize]);
         let conditions = Conditions::on("fanuc-0i-tf");
         let plain = Style::default();
         let one_block = conditions
@@ -212,18 +192,18 @@ fn threads() {
 
 #[test]
 fn holes() {
-    let mut dice = Dice(99_991);
+    let mut dice = Dice::new(99_991);
     for _ in 0..300 {
-        let is_face = dice.chance(50);
-        let start = (dice.between(100, 300), dice.between(-200, 50));
-        let (r, depth) = (dice.between(0, 20), dice.between(10, 120));
-        let across = dice.between(-60, 60);
-        let (peck, repeats) = (dice.between(2, 60), dice.between(1, 3));
+        let is_face = dice.percent(50);
+        let start = (dice.whole(100, 300), dice.whole(-200, 50));
+        let (r, depth) = (dice.whole(0, 20), dice.whole(10, 120));
+        let across = dice.whole(-60, 60);
+        let (peck, repeats) = (dice.whole(2, 60), dice.whole(1, 3));
         let conditions = Conditions::on("fanuc-0i-tf")
-            .with("5101#2", if dice.chance(50) { "1" } else { "0" })
+            .with("5101#2", if dice.percent(50) { "1" } else { "0" })
             .with("5114", "0.254")
             .with("5115", "0.127");
-        let code = ["G83", "G85", "G84"][dice.between(0, 2) as usize];
+        let code = ["G83", "G85", "G84"][dice.whole(0, 2) as usize];
         let code = match (is_face, code) {
             (true, code) => code,
             (false, "G83") => "G87",

@@ -13,6 +13,7 @@ use std::{env, fs};
 
 use support::{Conditions, Run, run};
 use turnwright_canon::Action;
+use turnwright_dice::Dice;
 
 const CONTROLS: [&str; 8] = [
     "fanuc-0i-mate-tb",
@@ -254,41 +255,22 @@ const VALUES: &[&str] = &[
     "",
 ];
 
-/// xorshift64*, the same everywhere.
-struct Random(u64);
+/// Chance from a seed, or from others with `TURNWRIGHT_SEED`.
+fn dice_of(seed: u64) -> Dice {
+    let other: u64 = env::var("TURNWRIGHT_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(0);
+    Dice::new(seed ^ (other << 8))
+}
 
-impl Random {
-    fn new(seed: u64) -> Self {
-        let other = env::var("TURNWRIGHT_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(0);
-        Self(seed ^ (other << 8))
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(2_685_821_657_736_338_717) >> 16
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        (self.next() % end.max(1) as u64) as usize
-    }
-
-    fn pick<'a, T>(&mut self, from: &'a [T]) -> &'a T {
-        &from[self.below(from.len())]
-    }
-
-    /// Fills in a block and appends it.
-    fn block(&mut self, out: &mut String, forms: &[&str], values: &[&str]) {
-        for letter in self.pick::<&str>(forms).chars() {
-            match letter {
-                '$' => out.push_str(self.pick::<&str>(values)),
-                '@' => out.push(char::from(b'0' + self.below(6) as u8)),
-                letter => out.push(letter),
-            }
+/// Fills in a block and appends it.
+fn push_block(dice: &mut Dice, out: &mut String, forms: &[&str], values: &[&str]) {
+    for letter in dice.pick::<&str>(forms).chars() {
+        match letter {
+            '$' => out.push_str(dice.pick::<&str>(values)),
+            '@' => out.push(char::from(b'0' + dice.below(6) as u8)),
+            letter => out.push(letter),
         }
-        out.push('\n');
     }
+    out.push('\n');
 }
 
 fn rounds(of_a_test: usize) -> usize {
@@ -296,15 +278,15 @@ fn rounds(of_a_test: usize) -> usize {
 }
 
 /// A program of words that exist, two of its blocks in three moves.
-fn soup(random: &mut Random) -> String {
+fn soup(dice: &mut Dice) -> String {
     let mut text = String::from("O1\nM3S500F0.2\n");
     // Half of the programs have plain values only and so come further.
-    let values = if random.below(2) == 0 { VALUES } else { &VALUES[..20] };
-    for _ in 0..random.below(25) {
-        let forms = if random.below(3) == 0 { FLOW } else { MOVES };
-        random.block(&mut text, forms, values);
+    let values = if dice.below(2) == 0 { VALUES } else { &VALUES[..20] };
+    for _ in 0..dice.below(25) {
+        let forms = if dice.below(3) == 0 { FLOW } else { MOVES };
+        push_block(dice, &mut text, forms, values);
     }
-    if random.below(2) == 0 {
+    if dice.below(2) == 0 {
         text.push_str("M30\nO0002\n#101=#1\nG1U-#2Z#26\nM99\nO3\n#1=#1+1\nM99\n");
     }
     text
@@ -341,20 +323,20 @@ fn good_programs() -> Vec<(String, Vec<u8>)> {
 }
 
 /// Changes bytes, numbers and lines.
-fn mutate(random: &mut Random, text: &mut Vec<u8>, other: &[u8]) {
-    for _ in 0..1 + random.below(4) {
-        let at = random.below(text.len());
+fn mutate(dice: &mut Dice, text: &mut Vec<u8>, other: &[u8]) {
+    for _ in 0..1 + dice.below(4) {
+        let at = dice.index(text.len());
         if text.is_empty() {
             return;
         }
-        match random.below(8) {
-            0 => text[at] = random.next() as u8,
+        match dice.below(8) {
+            0 => text[at] = dice.roll() as u8,
             1 => drop(text.remove(at)),
-            2 => text.insert(at, *random.pick::<u8>(b"0123456789.-GXZRCA#[]()/,;%=\n\r")),
+            2 => text.insert(at, *dice.pick::<u8>(b"0123456789.-GXZRCA#[]()/,;%=\n\r")),
             3 => text.truncate(at.max(1)),
             4 => {
                 let lines: Vec<&[u8]> = other.split(|byte| *byte == b'\n').collect();
-                let line = *random.pick(&lines);
+                let line = *dice.pick(&lines);
                 let from = text[..at].iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
                 text.splice(from..from, [line, b"\n"].concat());
             }
@@ -368,7 +350,7 @@ fn mutate(random: &mut Random, text: &mut Vec<u8>, other: &[u8]) {
                 let is_number = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'.' | b'-');
                 if let Some(start) = text[at..].iter().position(is_number).map(|start| at + start) {
                     let length = text[start..].iter().take_while(|byte| is_number(byte)).count();
-                    text.splice(start..start + length, random.pick::<&str>(VALUES).bytes());
+                    text.splice(start..start + length, dice.pick::<&str>(VALUES).bytes());
                 }
             }
         }
@@ -380,7 +362,7 @@ fn said(run: &Run) -> impl Iterator<Item = &turnwright_diagnostics::Diagnostic> 
 }
 
 /// Everything that holds for any text.
-fn check(random: &mut Random, control: &str, text: &[u8]) {
+fn check(dice: &mut Dice, control: &str, text: &[u8]) {
     let conditions = Conditions { blocks_max: 2_000, ..Conditions::on(control) };
     let shown = || format!("{control}\n{}", String::from_utf8_lossy(text));
     let first = run(text, &conditions);
@@ -414,7 +396,7 @@ fn check(random: &mut Random, control: &str, text: &[u8]) {
         assert!(!debug.contains("NaN") && !debug.contains("inf"), "{debug}\n{}", shown());
     }
     first.listing();
-    let pieces = Conditions { bytes_at_once: 1 + random.below(7), ..conditions.clone() };
+    let pieces = Conditions { bytes_at_once: 1 + dice.index(7), ..conditions.clone() };
     for again in [run(text, &conditions), run(text, &pieces)] {
         assert_eq!(first.diagnostics(), again.diagnostics(), "{}", shown());
         assert!(
@@ -442,36 +424,36 @@ fn lines(text: &[u8]) -> Vec<&[u8]> {
 
 #[test]
 fn soup_of_the_whole_language() {
-    let mut random = Random::new(0x5eed_0011);
+    let mut dice = dice_of(0x5eed_0011);
     for round in 0..rounds(400) {
-        let text = soup(&mut random);
-        check(&mut random, CONTROLS[round % CONTROLS.len()], text.as_bytes());
+        let text = soup(&mut dice);
+        check(&mut dice, CONTROLS[round % CONTROLS.len()], text.as_bytes());
     }
 }
 
 #[test]
 fn changed_programs_of_the_manual() {
-    let mut random = Random::new(0x5eed_0012);
+    let mut dice = dice_of(0x5eed_0012);
     let programs = good_programs();
     for _ in 0..rounds(400) {
-        let (control, text) = random.pick(&programs);
+        let (control, text) = dice.pick(&programs);
         let mut text = text.clone();
-        let other = &random.pick(&programs).1;
-        mutate(&mut random, &mut text, other);
-        check(&mut random, control, &text);
+        let other = &dice.pick(&programs).1;
+        mutate(&mut dice, &mut text, other);
+        check(&mut dice, control, &text);
     }
 }
 
 #[test]
 fn a_loop_gives_what_its_blocks_give_written_out() {
-    let mut random = Random::new(0x5eed_0013);
+    let mut dice = dice_of(0x5eed_0013);
     // Plain values and values that change from turn to turn.
     let values = ["1", "2.", "10.", "-5.", "0.5", "#149", "[#149*2.5]", "-#149", "30."];
     let mut compared = 0;
     for round in 0..rounds(400) {
         let mut body = String::new();
-        for _ in 0..1 + random.below(5) {
-            random.block(&mut body, MOVES, &values);
+        for _ in 0..1 + dice.below(5) {
+            push_block(&mut dice, &mut body, MOVES, &values);
         }
         let control = CONTROLS[round % CONTROLS.len()];
         let head = "O1\nM3S500F0.2\nG0X50.Z5.\n#149=0\n";

@@ -3,22 +3,7 @@
 mod support;
 
 use support::{Conditions, run};
-
-/// xorshift64*, the same everywhere.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(2_685_821_657_736_338_717)
-    }
-
-    fn pick<'a>(&mut self, from: &[&'a str]) -> &'a str {
-        from[(self.next() % from.len() as u64) as usize]
-    }
-}
+use turnwright_dice::Dice;
 
 const CONTROLS: [&str; 8] = [
     "fanuc-0i-mate-tb",
@@ -68,18 +53,18 @@ const NUMBERS: [&str; 24] = [
 ];
 
 /// A program of words that exist, in an order that nobody would write.
-fn soup(random: &mut Random) -> String {
+fn soup(dice: &mut Dice) -> String {
     let mut text = String::from("O1\n");
-    for _ in 0..random.next() % 30 {
-        if random.next().is_multiple_of(3) {
-            text.push_str(&format!("N{} ", random.next() % 5));
+    for _ in 0..dice.roll() % 30 {
+        if dice.roll().is_multiple_of(3) {
+            text.push_str(&format!("N{} ", dice.roll() % 5));
         }
-        if !random.next().is_multiple_of(3) {
-            text.push_str(random.pick(&CODES));
+        if !dice.roll().is_multiple_of(3) {
+            text.push_str(dice.pick::<&str>(&CODES));
         }
-        for _ in 0..random.next() % 5 {
-            text.push_str(random.pick(&WORDS));
-            text.push_str(random.pick(&NUMBERS));
+        for _ in 0..dice.roll() % 5 {
+            text.push_str(dice.pick::<&str>(&WORDS));
+            text.push_str(dice.pick::<&str>(&NUMBERS));
         }
         text.push('\n');
     }
@@ -101,9 +86,9 @@ fn check(text: &[u8], control: &str) {
 
 #[test]
 fn soup_of_words_ends_with_a_diagnostic_or_the_end() {
-    let mut random = Random(0x5eed_0003);
+    let mut dice = Dice::new(0x5eed_0003);
     for round in 0..3_000 {
-        let text = soup(&mut random);
+        let text = soup(&mut dice);
         check(text.as_bytes(), CONTROLS[round % CONTROLS.len()]);
     }
 }
@@ -114,18 +99,18 @@ fn mutated_programs_end_too() {
                 Z-15. F0.1\nX30. Z-30. R3.\nG2 X36. Z-45. R15.\nN9 G1 X46.\nG70 P5 Q9\nG76 P020060 Q100 R0.05\n\
                 G76 X17.4 Z-20. P1300 Q400 F2.\nG75 R0.5\nG75 X40. Z-50. P2000 Q3000\nG92 X20. Z-10. F1.5\nX19.\n\
                 G28 U0 W0\nM30\n";
-    let mut random = Random(0x5eed_0004);
+    let mut dice = Dice::new(0x5eed_0004);
     for round in 0..3_000 {
         let mut text = good.as_bytes().to_vec();
-        for _ in 0..1 + random.next() % 4 {
-            let at = (random.next() % text.len().max(1) as u64) as usize;
+        for _ in 0..1 + dice.roll() % 4 {
+            let at = (dice.roll() % text.len().max(1) as u64) as usize;
             if text.is_empty() {
                 break;
             }
-            match random.next() % 4 {
-                0 => text[at] = random.next() as u8,
+            match dice.roll() % 4 {
+                0 => text[at] = dice.roll() as u8,
                 1 => drop(text.remove(at)),
-                2 => text.insert(at, b"0123456789.-GXZ#[(;%\n"[(random.next() % 21) as usize]),
+                2 => text.insert(at, b"0123456789.-GXZ#[(;%\n"[(dice.roll() % 21) as usize]),
                 _ => text.truncate(at.max(1)),
             }
         }

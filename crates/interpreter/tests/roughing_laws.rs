@@ -5,19 +5,7 @@ mod support;
 
 use support::{Conditions, Run, run};
 use turnwright_canon::Command;
-
-/// Marsaglia's xorshift: the same numbers on every machine.
-struct Dice(u64);
-
-impl Dice {
-    /// From `low` to `high`, both included.
-    fn between(&mut self, low: i64, high: i64) -> i64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        low + (self.0 % (high - low + 1) as u64) as i64
-    }
-}
+use turnwright_dice::Dice;
 
 /// Lengths are whole hundredths of an inch, so that both systems can say them.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -60,14 +48,14 @@ struct Figure {
 
 impl Figure {
     fn new(dice: &mut Dice) -> Self {
-        let has_pockets = dice.between(0, 2) > 0;
-        let bottom = 2 * dice.between(30, 100);
+        let has_pockets = dice.whole(0, 2) > 0;
+        let bottom = 2 * dice.whole(30, 100);
         let (mut at, mut blocks) = ((bottom, 10), Vec::new());
-        for _ in 0..dice.between(2, 9) {
-            let (size, length) = (dice.between(1, 40), dice.between(1, 60));
-            let down = has_pockets && dice.between(0, 2) == 0 && at.0 > 2 * size + 20;
+        for _ in 0..dice.whole(2, 9) {
+            let (size, length) = (dice.whole(1, 40), dice.whole(1, 60));
+            let down = has_pockets && dice.whole(0, 2) == 0 && at.0 > 2 * size + 20;
             let x = if down { at.0 - 2 * size } else { at.0 + 2 * size };
-            let block = match dice.between(0, 5) {
+            let block = match dice.whole(0, 5) {
                 0 => (1, 0, (at.0, at.1 - length)),
                 1 => (2, size, (x, at.1 - size)),
                 2 => (3, size, (x, at.1 - size)),
@@ -79,7 +67,7 @@ impl Figure {
         let highest = blocks.iter().map(|block| block.2.0).max().unwrap_or(bottom);
         let start = (highest.max(bottom) + 40, 10);
         blocks.push((1, 0, (start.0, at.1)));
-        Self { start, bottom, depth: dice.between(4, 40), has_pockets, blocks }
+        Self { start, bottom, depth: dice.whole(4, 40), has_pockets, blocks }
     }
 
     /// The cycle block, and the figure.
@@ -139,7 +127,7 @@ fn moves(run: &Run) -> Vec<(String, f64, f64)> {
 
 #[test]
 fn the_same_roughing_in_other_words_makes_the_same_passes() {
-    let mut dice = Dice(0x5EED_0F71);
+    let mut dice = Dice::new(0x5EED_0F71);
     let (mut with_pockets, mut count) = (0, 0);
     for _ in 0..700 {
         let figure = Figure::new(&mut dice);

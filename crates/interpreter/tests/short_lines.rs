@@ -5,22 +5,7 @@
 mod support;
 
 use support::{Conditions, run};
-
-/// xorshift64.
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, end: u64) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0 % end
-    }
-
-    fn one_of<'a>(&mut self, choices: &[&'a str]) -> &'a str {
-        choices[self.below(choices.len() as u64) as usize]
-    }
-}
+use turnwright_dice::Dice;
 
 const CONTROLS: [&str; 8] = [
     "fanuc-0i-mate-tb",
@@ -57,7 +42,7 @@ fn line(dice: &mut Dice) -> String {
     }
     if dice.below(2) == 0 {
         let codes = ["0", "00", "1", "01", "1", "2", "03", "3", "1.", "98", "99", "21", "4"];
-        words.push(format!("G{}", dice.one_of(&codes)));
+        words.push(format!("G{}", dice.pick(&codes)));
     }
     for (usual, rare, sides) in
         [("X", "U", 5), ("Z", "W", 5), ("R", "I", 40), ("K", "F", 12), ("F", "X", 30), ("K", "Z", 20)]
@@ -72,20 +57,20 @@ fn line(dice: &mut Dice) -> String {
     }
     let mut line = String::new();
     for word in &words {
-        line.push_str(dice.one_of(&["", " ", " ", " "]));
+        line.push_str(dice.pick::<&str>(&["", " ", " ", " "]));
         line.push_str(word);
     }
-    line.push_str(dice.one_of(&["", "", "", ";", " ", "; ", "(C)", " M8"]));
-    line.push_str(dice.one_of(&["\n", "\n", "\r\n", "\r"]));
+    line.push_str(dice.pick::<&str>(&["", "", "", ";", " ", "; ", "(C)", " M8"]));
+    line.push_str(dice.pick::<&str>(&["\n", "\n", "\r\n", "\r"]));
     line
 }
 
 #[test]
 fn short_lines_do_what_blocks_do() {
-    let mut dice = Dice(0x7a11_0c4e_0d1c_e5ed);
+    let mut dice = Dice::new(0x7a11_0c4e_0d1c_e5ed);
     for round in 0..3_000 {
         let control = CONTROLS[round % CONTROLS.len()];
-        let head = dice.one_of(&["", "G98\n", "G98 F100.\n", "M3 S500\nG99 F.2\n", "G96 S120 M3\n"]);
+        let head = dice.pick(&["", "G98\n", "G98 F100.\n", "M3 S500\nG99 F.2\n", "G96 S120 M3\n"]);
         let mut program = format!("O1\n{head}G0 X50. Z2.\n");
         for _ in 0..dice.below(12) {
             program.push_str(&line(&mut dice));
@@ -128,7 +113,7 @@ fn body(dice: &mut Dice, lead: &str) -> String {
     for _ in 0..1 + dice.below(5) {
         if dice.below(4) == 0 {
             let statement = ["#2=#1*.1", "#4=#0", "#4=#1+1.", "IF[#1 LT 3]THEN #2=5.", "#3=SIN[#1]"];
-            body.push_str(&format!("{}\n", dice.one_of(&statement)));
+            body.push_str(&format!("{}\n", dice.pick(&statement)));
             continue;
         }
         let mut words = Vec::new();
@@ -136,7 +121,7 @@ fn body(dice: &mut Dice, lead: &str) -> String {
             words.push(format!("N{}", dice.below(9_000)));
         }
         if dice.below(2) == 0 {
-            words.push(format!("G{}", dice.one_of(&["0", "1", "01", "1", "0", "1", "2", "4"])));
+            words.push(format!("G{}", dice.pick(&["0", "1", "01", "1", "0", "1", "2", "4"])));
         }
         for (usual, rare, sides) in [("X", "U", 4), ("Z", "W", 4), ("R", "K", 90), ("F", "F", 15)] {
             if dice.below(sides) < 3 {
@@ -155,14 +140,14 @@ fn body(dice: &mut Dice, lead: &str) -> String {
 #[test]
 fn short_lines_of_loops_do_what_blocks_do() {
     let seed = 0x100b_5a11_de5c_0de5;
-    let (mut dice, mut moves) = (Dice(seed), 0);
+    let (mut dice, mut moves) = (Dice::new(seed), 0);
     for round in 0..2_000 {
         let control = CONTROLS[round % CONTROLS.len()];
-        let head = dice.one_of(&["", "G98\n", "G98 F100.\n", "M3 S500\nG99 F.2\n", "G98 F80.\n"]);
+        let head = dice.pick(&["", "G98\n", "G98 F100.\n", "M3 S500\nG99 F.2\n", "G98 F80.\n"]);
         let rounds = 1 + dice.below(20);
-        let state = dice.0;
+        let before = dice.clone();
         let mut program = |lead: &str| {
-            dice = Dice(state);
+            dice = before.clone();
             let body = body(&mut dice, lead);
             if dice.below(3) == 0 {
                 // The same as a subprogram that is called again and again.

@@ -1,18 +1,7 @@
 //! Laws of the reader: it never fails, forgets nothing, and stays small.
 
+use turnwright_dice::Dice;
 use turnwright_syntax::{Block, Tree, scan_block};
-
-/// xorshift64*, the same everywhere.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(2_685_821_657_736_338_717)
-    }
-}
 
 const SOUP: [&[u8]; 34] = [
     b"G",
@@ -53,14 +42,14 @@ const SOUP: [&[u8]; 34] = [
 
 #[test]
 fn print_of_parse_is_the_text_for_random_bytes_and_token_soup() {
-    let mut random = Random(0x5eed_0001);
+    let mut dice = Dice::new(0x5eed_0001);
     for round in 0..4_000 {
         let mut text = Vec::new();
-        for _ in 0..random.next() % 60 {
+        for _ in 0..dice.roll() % 60 {
             if round % 2 == 0 {
-                text.push(random.next() as u8);
+                text.push(dice.roll() as u8);
             } else {
-                text.extend_from_slice(SOUP[(random.next() % SOUP.len() as u64) as usize]);
+                text.extend_from_slice(SOUP[(dice.roll() % SOUP.len() as u64) as usize]);
             }
         }
         let tree = Tree::parse(text.clone());
@@ -81,12 +70,12 @@ fn the_tree_takes_at_most_four_times_the_source() {
 
 #[test]
 fn every_word_lies_inside_its_line_and_in_order() {
-    let mut random = Random(0x5eed_0002);
+    let mut dice = Dice::new(0x5eed_0002);
     let mut block = Block::new();
     for _ in 0..4_000 {
         let mut line = Vec::new();
-        for _ in 0..random.next() % 40 {
-            let part = SOUP[(random.next() % SOUP.len() as u64) as usize];
+        for _ in 0..dice.roll() % 40 {
+            let part = SOUP[(dice.roll() % SOUP.len() as u64) as usize];
             if !part.contains(&b'\n') && !part.contains(&b'\r') {
                 line.extend_from_slice(part);
             }
