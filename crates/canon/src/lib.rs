@@ -94,6 +94,8 @@ pub enum Action {
     RigidTapping(bool),
     /// From here on the speed of the spindle is watched, or, with `None`, no more.
     SpindleWatch(Option<SpindleWatch>),
+    /// Switches of the operator's panel that do nothing from here on.
+    PanelLock(PanelLock),
     /// How moves meet from here on.
     PathMode(PathMode),
     /// Standing still; the tool comes to rest also when the time is zero.
@@ -264,6 +266,15 @@ pub struct SpindleWatch {
     pub allowed_permille: u32,
     /// Smaller differences are no alarm.
     pub band: Rpm,
+}
+
+/// Which switches of the operator's panel a program has put out of action.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PanelLock {
+    /// Feed hold.
+    pub hold: bool,
+    /// Feed override: it counts as 100 %.
+    pub feed_override: bool,
 }
 
 /// Coolant on or off.

@@ -89,6 +89,12 @@ pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
             let text = format!("spindle-watch {delay}ms reached{reached}% allowed{allowed}% band{band}rpm");
             out.extend_from_slice(text.as_bytes());
         }
+        Action::PanelLock(lock) => out.extend_from_slice(match (lock.hold, lock.feed_override) {
+            (false, false) => b"panel-lock off".as_slice(),
+            (true, false) => b"panel-lock hold",
+            (false, true) => b"panel-lock override",
+            (true, true) => b"panel-lock hold override",
+        }),
         Action::SpindleWatch(None) => out.extend_from_slice(b"spindle-watch off"),
         Action::RigidTapping(false) => out.extend_from_slice(b"rigid-tapping off"),
         Action::PathMode(mode) => out.extend_from_slice(match mode {

@@ -203,6 +203,7 @@ impl PathRecorder {
             | Action::Coupling(_)
             | Action::RigidTapping(_)
             | Action::SpindleWatch(_)
+            | Action::PanelLock(_)
             | Action::Spindle { .. }
             | Action::Coolant(_)
             | Action::Auxiliary { .. }

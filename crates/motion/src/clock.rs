@@ -6,7 +6,9 @@
 //! revolution with the spindle standing, no feed at all) has no known time: it counts no seconds and is
 //! counted in [`Clock::unknown_feeds`].
 
-use turnwright_canon::{Action, Command, Dwell, OtherAxes, PathMode, RapidPath, Shape, SpindleWatch};
+use turnwright_canon::{
+    Action, Command, Dwell, OtherAxes, PanelLock, PathMode, RapidPath, Shape, SpindleWatch,
+};
 use turnwright_units::{Feed, Lead, Position, WorkTip};
 
 use crate::axes::AxisPlaces;
@@ -81,6 +83,7 @@ pub struct Clock {
     /// The operator has set the panel otherwise than usual.
     is_manned: bool,
     mode: PathMode,
+    lock: PanelLock,
     position: Position<WorkTip>,
     axes: AxisPlaces,
     tool: Option<u32>,
@@ -112,6 +115,7 @@ impl Clock {
             rates,
             is_manned: rates.panel != Panel::default(),
             mode: PathMode::Continuous,
+            lock: PanelLock::default(),
             position: start,
             axes: AxisPlaces::default(),
             tool: None,
@@ -178,7 +182,17 @@ impl Clock {
         if !self.is_manned {
             return rates;
         }
-        rates.map(|rate| self.rates.panel.rapid_rate(&self.rates.panel_rules, rate))
+        rates.map(|rate| self.panel().rapid_rate(&self.rates.panel_rules, rate))
+    }
+
+    /// The panel as the program lets it act.
+    pub(crate) fn panel(&self) -> Panel {
+        self.rates.panel.locked(self.lock)
+    }
+
+    /// What of the panel the program locks.
+    pub(crate) const fn lock(&self) -> PanelLock {
+        self.lock
     }
 
     /// The panel is set otherwise from here on.
@@ -374,6 +388,10 @@ impl Clock {
                 self.mode = *mode;
                 self.still(Kind::Other, 0.0)
             }
+            Action::PanelLock(lock) => {
+                self.lock = *lock;
+                self.still(Kind::Other, 0.0)
+            }
             Action::Coupling(_) | Action::Message(_) | Action::Output(_) => self.still(Kind::Other, 0.0),
         };
         if timing.kind != Kind::Threading {
@@ -539,7 +557,7 @@ impl Clock {
         let (length_mm, feed_mm) =
             axes.as_ref().map_or((length_mm, length_mm), |way| (way.length_mm, way.feed_mm));
         let cutting_max = self.rates.cutting_max_mm_per_min;
-        let feed = if self.is_manned { self.rates.panel.feed(self.mode, feed) } else { feed };
+        let feed = if self.is_manned { self.panel().feed(self.mode, feed) } else { feed };
         // Degrees are no way in millimetres: with rotary axes only the length is held below the limit.
         let fastest = if axes.is_some() { f64::INFINITY } else { cutting_max };
         let known = match (feed, self.spindle.order) {

@@ -3,7 +3,7 @@
 //! In: what the operator has set, and what the control's parameters make of it. Out: what that asks of a path, as one
 //! [`Feedrate`] and whether the axes stand: every switch is a cap on the same mechanism.
 
-use turnwright_canon::PathMode;
+use turnwright_canon::{PanelLock, PathMode};
 use turnwright_units::{Feed, FeedPerMinute, FeedPerRevolution, Length};
 
 use crate::planner::Feedrate;
@@ -72,6 +72,16 @@ impl Default for Panel {
 }
 
 impl Panel {
+    /// What is left of it while a program locks some of it.
+    #[must_use]
+    pub(crate) fn locked(self, lock: PanelLock) -> Self {
+        Self {
+            is_held: self.is_held && !lock.hold,
+            feed: if lock.feed_override { 1.0 } else { self.feed },
+            ..self
+        }
+    }
+
     /// What it makes of cuts, and whether they stand.
     pub(crate) fn cutting(&self, mode: PathMode) -> (Feedrate, bool) {
         match self.dry_run_mm_per_min {

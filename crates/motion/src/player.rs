@@ -244,6 +244,7 @@ impl Player {
     /// The panel as it acts now.
     fn acting_panel(&self) -> Panel {
         Panel { is_held: self.panel.is_held && !self.is_hold_deferred, ..self.panel }
+            .locked(self.clock.lock())
     }
 
     /// Behind a move that follows a thread a feed hold from that thread acts.

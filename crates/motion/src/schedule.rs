@@ -75,8 +75,6 @@ struct Planning {
     passed_s: f64,
     mode: PathMode,
     has_others: bool,
-    /// How the operator has set the panel.
-    panel: Panel,
     /// In single-block operation the axes come to rest behind the last cut.
     is_block_over: bool,
 }
@@ -92,7 +90,6 @@ impl Schedule {
                 passed_s: 0.0,
                 mode: PathMode::Continuous,
                 has_others: false,
-                panel: rates.panel,
                 is_block_over: false,
             })
         });
@@ -191,7 +188,7 @@ impl Planning {
     }
 
     fn add(&mut self, command: Command, clock: &mut Clock, entries: &mut Entries) {
-        let (feedrate, is_held) = self.panel.cutting(self.mode);
+        let (feedrate, is_held) = clock.panel().cutting(self.mode);
         // What stands for ever has no time.
         let cut = if is_held { None } else { clock.cut_order(&command.action) };
         let Some(cut) = cut else {
@@ -219,7 +216,7 @@ impl Planning {
             self.run.pace.preset(feedrate, false);
             self.passed_s = 0.0;
         }
-        self.is_block_over = self.panel.single_block && !command.origin.runs_on;
+        self.is_block_over = clock.panel().single_block && !command.origin.runs_on;
         let waiting = Timing { seconds: timing.waited_s, ..timing };
         entries.add(command, Entry { timing: waiting, legs: 0, is_complete: false });
         for leg in 0..self.legs.len() {

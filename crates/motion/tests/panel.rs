@@ -2,8 +2,8 @@
 //! rules of threads, dwells and the reference return make of it.
 
 use turnwright_canon::{
-    Action, Command, CycleLabel, CycleOrigin, Dwell, Origin, PathMode, Phase, RapidPath, Shape, SpindleSpeed,
-    SpindleState,
+    Action, Command, CycleLabel, CycleOrigin, Dwell, Origin, PanelLock, PathMode, Phase, RapidPath, Shape,
+    SpindleSpeed, SpindleState,
 };
 use turnwright_motion::{
     Clock, Dynamics, Kind, MachineRates, Panel, PanelRules, Player, RapidOverride, Sample, Schedule,
@@ -308,4 +308,28 @@ fn nothing_begins_while_the_operator_holds() {
     assert!((first(Kind::Stop).expect("waits") - 1.5).abs() < 2e-3, "{:?}", first(Kind::Stop));
     assert!((first(Kind::Other).expect("goes on") - 4.0).abs() < 2e-3, "{:?}", first(Kind::Other));
     assert!((first(Kind::Rapid).expect("moves") - 4.2).abs() < 3e-3, "{:?}", first(Kind::Rapid));
+}
+
+#[test]
+fn a_program_can_put_hold_and_override_out_of_action() {
+    let lock = |hold, feed_override| action(Action::PanelLock(PanelLock { hold, feed_override }));
+    let commands = [
+        lock(true, true),
+        cut(30.0, -5.0, per_minute(600.0)),
+        lock(false, false),
+        cut(30.0, -15.0, per_minute(600.0)),
+    ];
+    let half = Panel { feed: 0.5, ..Panel::default() };
+    let rates = rates(half, PanelRules::default());
+    let seconds = timed(&commands, rates);
+    // 10 mm at 10 mm/s are a second, then two: the lock ends the run, so each has its ramps.
+    assert!((seconds[1] - 1.0).abs() < 0.1 && (seconds[3] - 2.0).abs() < 0.1, "{seconds:?}");
+    // Held in the first cut: it ends first.
+    let held = Panel { is_held: true, ..half };
+    let (samples, is_stuck) = played(&commands, rates, &[(0.5, held)]);
+    let last = samples[samples.len() - 1];
+    assert!(is_stuck && (last.place[1] + 5.0).abs() < 1e-6, "{last:?}");
+    let (samples, is_stuck) = played(&commands, rates, &[(0.5, held), (3.0, half)]);
+    let last = samples[samples.len() - 1].time_s;
+    assert!(!is_stuck && (last - 3.0 - seconds[3]).abs() < 0.01, "{last} {seconds:?}");
 }

@@ -229,6 +229,11 @@ fn write_action(out: &mut Vec<u8>, action: &Action, decimals: u8) {
             write_fixed(out, watch.allowed_permille.into(), 1);
             write_number(out, br#","band_rpm":"#, watch.band.0);
         }
+        Action::PanelLock(lock) => {
+            let text =
+                format!(r#"{{"op":"panel-lock","hold":{},"override":{}"#, lock.hold, lock.feed_override);
+            out.extend_from_slice(text.as_bytes());
+        }
         Action::SpindleWatch(None) => out.extend_from_slice(br#"{"op":"spindle-watch","on":false"#),
         Action::Tool { tool, offset } => {
             write_number(out, br#"{"op":"tool","tool":"#, *tool);
@@ -547,6 +552,9 @@ mod tests {
         let expected =
             r#"{"op":"spindle-watch","on":true,"delay_ms":500,"reached_percent":5,"allowed_percent":12.5,"#;
         assert!(line.starts_with(expected) && line.contains(r#""band_rpm":50,"#), "{line}");
+        let lock = turnwright_canon::PanelLock { hold: true, feed_override: false };
+        let line = line_of(Action::PanelLock(lock), Origin::line(3));
+        assert!(line.starts_with(r#"{"op":"panel-lock","hold":true,"override":false,"#), "{line}");
         let line = line_of(Action::RigidTapping(true), Origin::line(3));
         assert!(line.starts_with(r#"{"op":"rigid-tapping","on":true,"#), "{line}");
     }

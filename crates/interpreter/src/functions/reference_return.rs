@@ -20,6 +20,7 @@
 //! Source: automatic return to the reference points, both families.
 
 use turnwright_canon::{Action, OtherAxes, RapidPath, Shape};
+use turnwright_control::policy::ReferenceReturnRate;
 use turnwright_diagnostics::{Diagnostic, Severity};
 use turnwright_syntax::{Block, Word};
 use turnwright_units::{Displacement, Position, WorkTip};
@@ -155,6 +156,9 @@ impl Core {
         let home = self.to_work(self.zeros.reference[number]);
         let home = named(present, home, by_way_of);
         self.warn_of_compensation(None);
+        let has_rate =
+            number > 0 || self.control.policies.reference_return_rate == ReferenceReturnRate::AllPoints;
+        let path = if has_rate { RapidPath::Home } else { RapidPath::EachAxis };
         // Both legs are non-linear whatever the parameter for positioning says.
         let others_by_way_of = self.other_ends(block)?;
         let others_home = self.other_reference(number, &others_by_way_of);
@@ -167,7 +171,7 @@ impl Core {
         };
         self.without_vector(|core| {
             core.rapid_each_axis_with(by_way_of, others_by_way_of)?;
-            core.rapid_along(RapidPath::Home, home, others_home)
+            core.rapid_along(path, home, others_home)
         })?;
         self.leave_out_movement(present & CROSS != 0, present & ALONG != 0);
         if number == 0 {

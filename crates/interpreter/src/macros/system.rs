@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use turnwright_canon::Action;
+use turnwright_canon::{Action, PanelLock};
 use turnwright_control::policy::{
     ClockVariables, ModalVariables, NineThousandVariables, PositionVariables, SkipVariables,
 };
@@ -360,10 +360,14 @@ impl Core {
                 Some(flags) => state.single_block = flags,
                 None => return Ok(Written::OutOfRange),
             },
-            3004 => match flags(7) {
-                Some(flags) => state.hold = flags,
-                None => return Ok(Written::OutOfRange),
-            },
+            3004 => {
+                let Some(flags) = flags(7) else { return Ok(Written::OutOfRange) };
+                let before = std::mem::replace(&mut state.hold, flags);
+                if (before ^ flags) & (HOLD_OFF | OVERRIDE_OFF) != 0 {
+                    let (hold, feed_override) = (flags & HOLD_OFF != 0, flags & OVERRIDE_OFF != 0);
+                    self.emit(Action::PanelLock(PanelLock { hold, feed_override }));
+                }
+            }
             3005 => {
                 let Some(settings) = (0.0..65_536.0).contains(&value).then_some(value as u32) else {
                     return Ok(Written::OutOfRange);
@@ -406,6 +410,12 @@ impl Core {
         String::from_utf8_lossy(&inner[..end]).trim().chars().take(COMMENT_CHARACTERS_MAX).collect()
     }
 }
+
+/// Feed hold is switched off: a bit of `#3004`.
+const HOLD_OFF: u8 = 1;
+
+/// So is the feed override.
+const OVERRIDE_OFF: u8 = 2;
 
 /// Longest text of a message.
 const COMMENT_CHARACTERS_MAX: usize = 80;

@@ -288,6 +288,7 @@ impl Machining {
             | Action::Coupling(_)
             | Action::RigidTapping(_)
             | Action::SpindleWatch(_)
+            | Action::PanelLock(_)
             | Action::PathMode(_)
             | Action::Dwell(_)
             | Action::Coolant(_)
