@@ -5,17 +5,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-/// xorshift64*, the same everywhere.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(2_685_821_657_736_338_717) >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
+use turnwright_dice::Dice;
 
 /// A value in ten-thousandths as a word with four decimals.
 struct Word(i64);
@@ -120,11 +110,11 @@ fn jumps(folder: &Path, jumps: u64) -> Result<(), String> {
 /// A long straight-line program; `numbered` adds N and F to every block.
 fn lines(folder: &Path, name: &str, blocks: u64, numbered: bool) -> Result<(), String> {
     let mut pair = Pair::create(folder, name)?;
-    let mut random = Random(88_172_645_463_325_252);
+    let mut dice = Dice::new(88_172_645_463_325_252);
     let (mut x, mut z) = (400_000i64, 0i64);
     for block in 0..blocks {
-        x = (x + ((random.unit() - 0.5) * 5_000.0) as i64).clamp(50_000, 600_000);
-        z -= (random.unit() * 200.0) as i64;
+        x = (x + ((dice.part() - 0.5) * 5_000.0) as i64).clamp(50_000, 600_000);
+        z -= (dice.part() * 200.0) as i64;
         if z < -2_000_000 {
             z = 0;
         }
@@ -144,14 +134,14 @@ fn lines(folder: &Path, name: &str, blocks: u64, numbered: bool) -> Result<(), S
 /// Quarter arcs, up and down in turn, by centre or by radius.
 fn arcs(folder: &Path, name: &str, blocks: u64, by_radius: bool) -> Result<(), String> {
     let mut pair = Pair::create(folder, name)?;
-    let mut random = Random(1_234_567_890_123);
+    let mut dice = Dice::new(1_234_567_890_123);
     let (mut x, mut z) = (400_000i64, 0i64);
     let start = |pair: &mut Pair, x: i64, z: i64| {
         pair.line(&format!("G1 X{} Z{}\n", Word(x * 2), Word(z)), &format!("G1 X{} Z{}\n", Word(x), Word(z)))
     };
     start(&mut pair, x, z)?;
     for block in 0..blocks {
-        let radius = 500 + (random.unit() * 4_000.0) as i64;
+        let radius = 500 + (dice.part() * 4_000.0) as i64;
         let up = block % 2 == 0;
         let way = if up { radius } else { -radius };
         let (code, to) = (if up { 2 } else { 3 }, (x + way, z - radius));

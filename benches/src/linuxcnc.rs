@@ -9,11 +9,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use turnwright_canon::{Action, Command as Order, Origin, RapidPath, Shape};
+use turnwright_dice::Dice;
 use turnwright_motion::{Dynamics, Kind, MachineRates, Player, Sample, Schedule};
 use turnwright_units::{Feed, FeedPerMinute, Length, Position, Radius, WorkTip};
 
 use crate::board::Board;
-use crate::motion::{Random, Stopwatch};
+use crate::motion::Stopwatch;
 
 /// Lines of a path.
 const COUNT: usize = 20_000;
@@ -34,12 +35,12 @@ type Place = (f64, f64);
 
 /// Back and forth: X goes any way, Z slowly on, as in the programs of [`crate::generate`].
 fn zigzag() -> Vec<Place> {
-    let mut random = Random::new(88_172_645_463_325_252);
+    let mut dice = Dice::new(88_172_645_463_325_252);
     let (mut x, mut z) = (40.0, 0.0);
     let mut places = vec![(x, z)];
     for _ in 0..COUNT {
-        x = f64::clamp(x + (random.part() - 0.5) * 0.5, 5.0, 60.0);
-        z -= random.part() * 0.02;
+        x = f64::clamp(x + (dice.part() - 0.5) * 0.5, 5.0, 60.0);
+        z -= dice.part() * 0.02;
         places.push((x, z));
     }
     places

@@ -7,33 +7,13 @@ use std::time::Instant;
 
 use rsruckig::prelude::{DataArrayOrVec, InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
 use turnwright_canon::{Action, Command, Origin, Shape, Turn};
+use turnwright_dice::Dice;
 use turnwright_motion::planner::{Pace, RunLimits};
 use turnwright_motion::{Dynamics, MachineRates, Player, Sample, Schedule};
 use turnwright_units::{Feed, FeedPerMinute, Length, Position, Radius, WorkTip};
 
 use crate::board::Board;
 use crate::{job, linuxcnc};
-
-/// xorshift64*, seeded.
-pub struct Random(u64);
-
-impl Random {
-    pub const fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// From 0 to 1.
-    pub fn part(&mut self) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn size(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.part())
-    }
-}
 
 /// Seconds on the processor: what others do meanwhile does not count. Elsewhere than on Linux, the wall's.
 fn processor_s(began: Instant) -> f64 {
@@ -82,8 +62,8 @@ fn segments(board: &mut Board) -> Result<(), String> {
     for (name, shortest, longest) in
         [("0.05 to 0.5 mm", 0.05, 0.5), ("0.5 to 5 mm", 0.5, 5.0), ("5 to 200 mm", 5.0, 200.0)]
     {
-        let mut random = Random(1);
-        let ways: Vec<f64> = (0..COUNT).map(|_| random.size(shortest, longest)).collect();
+        let mut dice = Dice::new(1);
+        let ways: Vec<f64> = (0..COUNT).map(|_| dice.size(shortest, longest)).collect();
         let mut pace = Pace::with_capacity(4, limits);
         let started = Stopwatch::start();
         let mut ours_s = 0.0;
@@ -180,14 +160,14 @@ fn ticks(board: &mut Board) {
         acceleration_mm_per_s2: limits.axes[0].acceleration_per_s2 / 4.0,
         jerk_mm_per_s3: limits.axes[0].jerk_per_s3 * 0.3,
     };
-    let mut random = Random(7);
+    let mut dice = Dice::new(7);
     let mut pace = Pace::with_capacity(2048, along);
     let mut nanoseconds = Vec::with_capacity(4_000_000);
     let mut tick = 0u32;
     let mut pushed = 0;
     while nanoseconds.len() < 2_000_000 && pushed < 3_000_000 {
         while pace.has_room(2) {
-            let _ = pace.push(random.size(0.05, 0.5), random.size(5.0, 40.0), 133.0);
+            let _ = pace.push(dice.size(0.05, 0.5), dice.size(5.0, 40.0), 133.0);
             pushed += 1;
         }
         pace.plan();
@@ -215,19 +195,19 @@ fn ticks(board: &mut Board) {
 
 /// Lines and small arcs in every direction, at any feed.
 fn program(seed: u64, size: f64) -> Vec<Command> {
-    let mut random = Random(seed * 977 + 3);
+    let mut dice = Dice::new(seed * 977 + 3);
     let (mut x, mut z) = (30.0, 0.0);
     (0..400)
         .map(|index| {
-            let (dx, dz) = (size * (random.part() - 0.5), size * (random.part() - 0.6));
-            let shape = if random.part() < 0.4 {
-                let turn = if random.part() < 0.5 { Turn::Clockwise } else { Turn::CounterClockwise };
+            let (dx, dz) = (size * (dice.part() - 0.5), size * (dice.part() - 0.6));
+            let shape = if dice.part() < 0.4 {
+                let turn = if dice.part() < 0.5 { Turn::Clockwise } else { Turn::CounterClockwise };
                 Shape::Arc { turn, centre: at(x + dx / 2.0, z + dz / 2.0) }
             } else {
                 Shape::Line
             };
             (x, z) = (x + dx, z + dz);
-            let feed = Feed::PerMinute(FeedPerMinute(length(random.size(20.0, 6000.0))));
+            let feed = Feed::PerMinute(FeedPerMinute(length(dice.size(20.0, 6000.0))));
             Command::new(Action::Feed { to: at(x, z), shape, feed, others: None }, Origin::line(index))
         })
         .collect()

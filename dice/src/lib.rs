@@ -47,6 +47,11 @@ impl Dice {
         low + (high - low) * self.part()
     }
 
+    /// Between two values above zero, all sizes alike.
+    pub fn size(&mut self, low: f64, high: f64) -> f64 {
+        low * (high / low).powf(self.part())
+    }
+
     /// True once in so many times.
     pub const fn one_in(&mut self, count: u64) -> bool {
         self.below(count) == 0

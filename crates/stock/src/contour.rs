@@ -63,9 +63,8 @@ impl Contour {
             self.segments[0].start = last.start;
             self.segments.pop();
         }
-        let Some(start) = self.segments.first().map(|first| first.start) else { return };
-        if let Some(last) = self.segments.last_mut() {
-            last.end = start;
+        if let [first, .., last] = self.segments.as_mut_slice() {
+            meet(last, first);
         }
     }
 }
@@ -165,8 +164,23 @@ impl Contour {
                 Some(Bend { centre: Point { x, z }, clockwise: (radius > 0.0) == (from < to) })
             }
         };
-        self.push(Segment { start, end, bend });
+        let mut segment = Segment { start, end, bend };
+        if let Some(last) = self.segments.last_mut().filter(|last| last.end == start) {
+            segment.start = edge.point(from);
+            meet(last, &mut segment);
+        }
+        self.push(segment);
         end
+    }
+}
+
+/// Lets two segments meet in one point: that of the line, where only one is a line. Where an arc stands upright, its X
+/// follows from Z to half the digits only.
+fn meet(last: &mut Segment, next: &mut Segment) {
+    if last.bend.is_some() && next.bend.is_none() {
+        last.end = next.start;
+    } else {
+        next.start = last.end;
     }
 }
 

@@ -1,28 +1,13 @@
 //! Seeded random turned parts, for tests and for the example that writes them.
 
+use turnwright_dice::Dice;
 use turnwright_geometry::{Bend, Outline, Point, Segment};
 use turnwright_stock::Section;
 
-/// xorshift64*.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
-    }
-
-    /// In steps of a quarter of a millimetre three times out of four.
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        let value = low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64;
-        if self.next().is_multiple_of(4) { value } else { (value * 4.0).round() / 4.0 }
-    }
-
-    fn below(&mut self, count: u64) -> u64 {
-        self.next() % count
-    }
+/// In steps of a quarter of a millimetre three times out of four.
+fn between(dice: &mut Dice, low: f64, high: f64) -> f64 {
+    let value = dice.between(low, high);
+    if dice.one_in(4) { value } else { (value * 4.0).round() / 4.0 }
 }
 
 fn polygon(places: &[(f64, f64)]) -> Option<Outline> {
@@ -32,14 +17,14 @@ fn polygon(places: &[(f64, f64)]) -> Option<Outline> {
 
 /// A bar or a tube of 20 mm radius and 60 mm with steps, cones, fillets, undercuts, bores and cavities in it.
 pub fn part(seed: u64) -> Section {
-    let random = &mut Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
-    let bore = if random.below(3) == 0 { random.between(2.0, 8.0) } else { 0.0 };
+    let dice = &mut Dice::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+    let bore = if dice.below(3) == 0 { between(dice, 2.0, 8.0) } else { 0.0 };
     let mut section = Section::tube(bore, 20.0, -60.0, 0.0).expect("a blank");
-    for _ in 0..2 + random.below(8) {
-        let z = random.between(-58.0, 0.0);
-        let x = random.between(4.0, 20.0);
-        let (width, depth) = (random.between(1.0, 8.0), random.between(1.0, 12.0));
-        let hole = match random.below(9) {
+    for _ in 0..2 + dice.below(8) {
+        let z = between(dice, -58.0, 0.0);
+        let x = between(dice, 4.0, 20.0);
+        let (width, depth) = (between(dice, 1.0, 8.0), between(dice, 1.0, 12.0));
+        let hole = match dice.below(9) {
             // Down to a diameter from the front, with a cone at the end.
             0 => polygon(&[(x, 1.0), (30.0, 1.0), (30.0, z - depth), (x, z)]),
             // A groove.
@@ -69,10 +54,10 @@ pub fn part(seed: u64) -> Section {
             section.cut_hole(&hole);
         }
     }
-    if random.below(4) == 0 {
+    if dice.below(4) == 0 {
         // A round end, of a sphere on the axis or of an arc beside it.
-        let radius = random.between(14.0, 30.0);
-        let centre = Point::new([0.0, 3.0, -5.0][random.below(3) as usize], -radius);
+        let radius = between(dice, 14.0, 30.0);
+        let centre = Point::new([0.0, 3.0, -5.0][dice.below(3) as usize], -radius);
         if let (Ok(disc), Ok(mut end)) =
             (Outline::circle(centre, radius), Section::tube(0.0, 25.0, -10.0, 5.0))
         {

@@ -2,11 +2,12 @@
 
 #![allow(dead_code)]
 
+use turnwright_dice::Dice;
 use turnwright_geometry::{Bend, Outline, Point, Segment, Vector, sweep_rad};
 use turnwright_stock::{Cutter, Sweep};
 
-/// xorshift64*, seeded: a failure names its case.
-pub struct Random(u64);
+/// Chance from a seed: a failure names its case.
+pub struct Random(Dice);
 
 pub fn point(x: f64, z: f64) -> Point {
     Point::new(x, z)
@@ -14,26 +15,19 @@ pub fn point(x: f64, z: f64) -> Point {
 
 impl Random {
     pub fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
+        Self(Dice::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1))
     }
 
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
+        self.0.between(low, high)
     }
 
     pub fn below(&mut self, count: usize) -> usize {
-        (self.next() % count as u64) as usize
+        self.0.index(count)
     }
 
     pub fn chance(&mut self, one_in: u64) -> bool {
-        self.next().is_multiple_of(one_in)
+        self.0.one_in(one_in)
     }
 
     pub fn shuffle<T>(&mut self, things: &mut [T]) {
