@@ -7,6 +7,7 @@ use turnwright_canon::{
     Action, Command, Curve, Dwell, Interpolation, Origin, OtherAxes, RapidPath, Shape, SidePlane, SidePoint,
     SpindleSpeed, SpindleState, Turn,
 };
+use turnwright_dice::Dice;
 use turnwright_motion::{
     ArcPath, Arrival, AuxiliaryTimes, BlockTime, BlockTimes, Clock, Dynamics, Fluctuation, Gear,
     GearSelection, Gears, Kind, LINES_MAX, MachineRates, Orientation, Panel, PanelRules, RapidOverride,
@@ -16,26 +17,6 @@ use turnwright_units::{
     Angle, Feed, FeedPerMinute, FeedPerRevolution, Lead, Length, Position, Radius, Revolutions, Rpm, Seconds,
     SurfaceSpeed, WorkTip,
 };
-
-/// xorshift64*, seeded: a failure names its case.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn chance(&mut self, one_in: u64) -> bool {
-        self.next().is_multiple_of(one_in)
-    }
-}
 
 fn length(mm: f64) -> Length {
     Length::from_nm((mm * 1e6).round() as i64)
@@ -56,13 +37,13 @@ struct Cut {
 }
 
 impl Cut {
-    fn random(random: &mut Random) -> Self {
+    fn random(dice: &mut Dice) -> Self {
         Self {
-            m_per_min: random.between(5.0, 400.0) as u32,
-            rpm_max: random.between(200.0, 6000.0) as u32,
-            rpm_min: if random.chance(3) { 0 } else { random.between(0.0, 800.0) as u32 },
-            feed_mm_per_rev: (random.between(0.01, 1.0) * 1e4).round() / 1e4,
-            cutting_max: random.between(100.0, 8000.0).round(),
+            m_per_min: dice.between(5.0, 400.0) as u32,
+            rpm_max: dice.between(200.0, 6000.0) as u32,
+            rpm_min: if dice.one_in(3) { 0 } else { dice.between(0.0, 800.0) as u32 },
+            feed_mm_per_rev: (dice.between(0.01, 1.0) * 1e4).round() / 1e4,
+            cutting_max: dice.between(100.0, 8000.0).round(),
         }
     }
 
@@ -128,20 +109,20 @@ fn near(value: f64, expected: f64, tolerance: f64, case: &dyn std::fmt::Debug) {
 
 #[test]
 fn an_ellipse_with_equal_half_axes_takes_the_time_of_its_circle() {
-    let mut random = Random(13);
+    let mut dice = Dice::new(13);
     for _ in 0..300 {
-        let cut = Cut::random(&mut random);
-        let radius = random.between(1.0, 80.0);
-        let (start, way) = (random.between(0.0, TAU), random.between(0.1, 3.0));
-        let (x, z) = (random.between(-20.0, 150.0), random.between(-100.0, 0.0));
+        let cut = Cut::random(&mut dice);
+        let radius = dice.between(1.0, 80.0);
+        let (start, way) = (dice.between(0.0, TAU), dice.between(0.1, 3.0));
+        let (x, z) = (dice.between(-20.0, 150.0), dice.between(-100.0, 0.0));
         let on = |angle: f64| at(x + radius * angle.sin(), z + radius * angle.cos());
-        let turn = if random.chance(2) { Turn::Clockwise } else { Turn::CounterClockwise };
+        let turn = if dice.one_in(2) { Turn::Clockwise } else { Turn::CounterClockwise };
         let (from, to) = match turn {
             Turn::CounterClockwise => (on(start), on(start + way)),
             Turn::Clockwise => (on(start + way), on(start)),
         };
         let (centre, half) = (at(x, z), length(radius));
-        let tilt = Angle::from_millidegrees(random.between(0.0, 180_000.0) as i64);
+        let tilt = Angle::from_millidegrees(dice.between(0.0, 180_000.0) as i64);
         let ellipse = Curve::Ellipse { turn, centre, half_along: half, half_across: half, tilt };
         let circle = cut.timing(from, to, Shape::Arc { turn, centre });
         let curve = cut.timing(from, to, Shape::Curve(Box::new(ellipse)));
@@ -152,17 +133,17 @@ fn an_ellipse_with_equal_half_axes_takes_the_time_of_its_circle() {
 
 #[test]
 fn lines_at_surface_speed_agree_with_integration() {
-    let mut random = Random(0x1dea_0001);
+    let mut dice = Dice::new(0x1dea_0001);
     for _ in 0..1500 {
-        let cut = Cut::random(&mut random);
-        let (x0, z0) = (random.between(-20.0, 80.0), random.between(-100.0, 5.0));
+        let cut = Cut::random(&mut dice);
+        let (x0, z0) = (dice.between(-20.0, 80.0), dice.between(-100.0, 5.0));
         // Also hardly any X, and none.
-        let dx = match random.next() % 4 {
+        let dx = match dice.roll() % 4 {
             0 => 0.0,
-            1 => random.between(-2e-6, 2e-6),
-            _ => random.between(-80.0, 80.0),
+            1 => dice.between(-2e-6, 2e-6),
+            _ => dice.between(-80.0, 80.0),
         };
-        let (from, to) = (at(x0, z0), at(x0 + dx, z0 + random.between(-50.0, 50.0)));
+        let (from, to) = (at(x0, z0), at(x0 + dx, z0 + dice.between(-50.0, 50.0)));
         let (start, end) = (from.x.to_mm(), to.x.to_mm());
         let mm = (end - start).hypot((to.z - from.z).to_mm());
         let expected = mm * integrate(&|t| cut.seconds_per_mm(start + (end - start) * t));
@@ -185,13 +166,13 @@ fn arc_seconds(cut: &Cut, arc: &ArcPath) -> f64 {
 
 #[test]
 fn circles_at_surface_speed_agree_with_integration() {
-    let mut random = Random(0x1dea_0002);
+    let mut dice = Dice::new(0x1dea_0002);
     for _ in 0..1500 {
-        let cut = Cut::random(&mut random);
-        let radius = random.between(0.1, 40.0);
-        let (cx, cz) = (random.between(-10.0, 60.0), random.between(-50.0, 0.0));
-        let start = random.between(-PI, PI);
-        let sweep = random.between(-TAU, TAU);
+        let cut = Cut::random(&mut dice);
+        let radius = dice.between(0.1, 40.0);
+        let (cx, cz) = (dice.between(-10.0, 60.0), dice.between(-50.0, 0.0));
+        let start = dice.between(-PI, PI);
+        let sweep = dice.between(-TAU, TAU);
         let on = |angle: f64| at(cx + radius * angle.sin(), cz + radius * angle.cos());
         let turn = if sweep < 0.0 { Turn::Clockwise } else { Turn::CounterClockwise };
         let (from, to, centre) = (on(start), on(start + sweep), at(cx, cz));
@@ -207,13 +188,13 @@ fn circles_at_surface_speed_agree_with_integration() {
 
 #[test]
 fn spirals_at_surface_speed_agree_with_integration() {
-    let mut random = Random(0x1dea_0003);
+    let mut dice = Dice::new(0x1dea_0003);
     for _ in 0..300 {
-        let cut = Cut::random(&mut random);
-        let (cx, cz) = (random.between(0.0, 60.0), random.between(-50.0, 0.0));
-        let start_radius = random.between(1.0, 40.0);
-        let end_radius = start_radius * (1.0 + random.between(-0.5, 0.5) * random.between(0.0, 1.0).powi(4));
-        let (start, sweep) = (random.between(-PI, PI), random.between(0.05, TAU));
+        let cut = Cut::random(&mut dice);
+        let (cx, cz) = (dice.between(0.0, 60.0), dice.between(-50.0, 0.0));
+        let start_radius = dice.between(1.0, 40.0);
+        let end_radius = start_radius * (1.0 + dice.between(-0.5, 0.5) * dice.between(0.0, 1.0).powi(4));
+        let (start, sweep) = (dice.between(-PI, PI), dice.between(0.05, TAU));
         let on = |angle: f64, radius: f64| at(cx + radius * angle.sin(), cz + radius * angle.cos());
         let turn = Turn::CounterClockwise;
         let (from, to, centre) = (on(start, start_radius), on(start + sweep, end_radius), at(cx, cz));
@@ -225,10 +206,10 @@ fn spirals_at_surface_speed_agree_with_integration() {
 
 #[test]
 fn a_line_cut_in_two_takes_as_long() {
-    let mut random = Random(0x1dea_0004);
+    let mut dice = Dice::new(0x1dea_0004);
     for _ in 0..2000 {
-        let cut = Cut::random(&mut random);
-        let mut place = || at(random.between(-20.0, 80.0), random.between(-90.0, 5.0));
+        let cut = Cut::random(&mut dice);
+        let mut place = || at(dice.between(-20.0, 80.0), dice.between(-90.0, 5.0));
         let (from, to) = (place(), place());
         // Halved exactly: both ways are made even.
         let middle = at((from.x.to_mm() + to.x.to_mm()) / 2.0, (from.z.to_mm() + to.z.to_mm()) / 2.0);
@@ -241,11 +222,10 @@ fn a_line_cut_in_two_takes_as_long() {
 
 #[test]
 fn turning_points_are_the_ends_of_the_extents() {
-    let mut random = Random(0x1dea_0005);
+    let mut dice = Dice::new(0x1dea_0005);
     for _ in 0..2000 {
-        let (cx, cz, radius) =
-            (random.between(-50.0, 50.0), random.between(-50.0, 0.0), random.between(0.1, 40.0));
-        let (start, sweep) = (random.between(-PI, PI), random.between(-TAU, TAU));
+        let (cx, cz, radius) = (dice.between(-50.0, 50.0), dice.between(-50.0, 0.0), dice.between(0.1, 40.0));
+        let (start, sweep) = (dice.between(-PI, PI), dice.between(-TAU, TAU));
         let on = |angle: f64| at(cx + radius * angle.sin(), cz + radius * angle.cos());
         let turn = if sweep < 0.0 { Turn::Clockwise } else { Turn::CounterClockwise };
         let (from, to) = (on(start), on(start + sweep));
@@ -263,82 +243,82 @@ fn turning_points_are_the_ends_of_the_extents() {
 }
 
 /// Anything that the types allow, sensible or not.
-fn any_action(random: &mut Random) -> Action {
-    let number = |random: &mut Random| match random.next() % 6 {
+fn any_action(dice: &mut Dice) -> Action {
+    let number = |dice: &mut Dice| match dice.roll() % 6 {
         0 => 0.0,
         1 => f64::NAN,
         2 => f64::INFINITY,
         3 => -1.0,
-        _ => random.between(0.0, 10.0),
+        _ => dice.between(0.0, 10.0),
     };
-    let any_length = |random: &mut Random| match random.next() % 8 {
+    let any_length = |dice: &mut Dice| match dice.roll() % 8 {
         0 => Length::ZERO,
         1 => Length::from_nm(i64::MAX),
         2 => Length::from_nm(i64::MIN),
         3 => Length::from_nm(1),
-        4 => Length::from_nm(random.next() as i64),
-        _ => length(random.between(-100.0, 100.0)),
+        4 => Length::from_nm(dice.roll() as i64),
+        _ => length(dice.between(-100.0, 100.0)),
     };
-    let place = |random: &mut Random| Position::new(Radius(any_length(random)), any_length(random));
-    let angle = |random: &mut Random| Angle::from_nanodegrees(any_length(random).nm());
-    let others = |random: &mut Random| {
-        random.chance(3).then(|| {
+    let place = |dice: &mut Dice| Position::new(Radius(any_length(dice)), any_length(dice));
+    let angle = |dice: &mut Dice| Angle::from_nanodegrees(any_length(dice).nm());
+    let others = |dice: &mut Dice| {
+        dice.one_in(3).then(|| {
             Box::new(OtherAxes {
-                c: random.chance(2).then(|| angle(random)),
-                y: random.chance(2).then(|| any_length(random)),
-                b: random.chance(2).then(|| angle(random)),
-                v: random.chance(2).then(|| any_length(random)),
-                per_degree: any_length(random),
+                c: dice.one_in(2).then(|| angle(dice)),
+                y: dice.one_in(2).then(|| any_length(dice)),
+                b: dice.one_in(2).then(|| angle(dice)),
+                v: dice.one_in(2).then(|| any_length(dice)),
+                per_degree: any_length(dice),
             })
         })
     };
-    match random.next() % 8 {
-        0 => Action::Rapid { to: place(random), path: RapidPath::EachAxis, others: others(random) },
-        1 => Action::Rapid { to: place(random), path: RapidPath::Straight, others: others(random) },
+    match dice.roll() % 8 {
+        0 => Action::Rapid { to: place(dice), path: RapidPath::EachAxis, others: others(dice) },
+        1 => Action::Rapid { to: place(dice), path: RapidPath::Straight, others: others(dice) },
         2 | 3 => {
-            let turn = if random.chance(2) { Turn::Clockwise } else { Turn::CounterClockwise };
-            let shape = match random.next() % 4 {
+            let turn = if dice.one_in(2) { Turn::Clockwise } else { Turn::CounterClockwise };
+            let shape = match dice.roll() % 4 {
                 0 | 1 => Shape::Line,
-                2 => Shape::Arc { turn, centre: place(random) },
+                2 => Shape::Arc { turn, centre: place(dice) },
                 _ => {
-                    let centre = SidePoint { along: any_length(random), side: any_length(random) };
+                    let centre = SidePoint { along: any_length(dice), side: any_length(dice) };
                     Shape::SideArc { plane: SidePlane::Wall, turn, centre }
                 }
             };
-            let feed = if random.chance(4) {
-                Feed::PerMinute(FeedPerMinute(any_length(random)))
+            let feed = if dice.one_in(4) {
+                Feed::PerMinute(FeedPerMinute(any_length(dice)))
             } else {
-                Feed::PerRevolution(FeedPerRevolution(any_length(random)))
+                Feed::PerRevolution(FeedPerRevolution(any_length(dice)))
             };
-            Action::Feed { to: place(random), shape, feed, others: others(random) }
+            Action::Feed { to: place(dice), shape, feed, others: others(dice) }
         }
         4 => Action::Thread {
-            to: place(random),
-            lead: Lead(any_length(random)),
-            lead_end: random.chance(2).then(|| Box::new(Lead(any_length(random)))),
+            to: place(dice),
+            lead: Lead(any_length(dice)),
+            lead_end: dice.one_in(2).then(|| Box::new(Lead(any_length(dice)))),
             start_angle: Angle::ZERO,
             shape: Shape::Line,
             is_chained: false,
         },
-        5 if random.chance(2) => Action::Dwell(Dwell::Time(Seconds(number(random)))),
-        5 => Action::Dwell(Dwell::Turns(Revolutions(number(random)))),
-        6 if random.chance(4) => Action::Auxiliary { code: 10 },
-        6 if random.chance(4) => {
-            [Action::Stop, Action::OptionalStop, Action::End][random.next() as usize % 3].clone()
+        5 if dice.one_in(2) => Action::Dwell(Dwell::Time(Seconds(number(dice)))),
+        5 => Action::Dwell(Dwell::Turns(Revolutions(number(dice)))),
+        6 if dice.one_in(4) => Action::Auxiliary { code: 10 },
+        6 if dice.one_in(4) => {
+            [Action::Stop, Action::OptionalStop, Action::End][dice.roll() as usize % 3].clone()
         }
-        6 if random.chance(3) => {
-            let radius = Radius(any_length(random));
+        6 if dice.one_in(3) => {
+            let radius = Radius(any_length(dice));
             Action::Interpolation(Interpolation::Cylindrical { radius })
         }
-        6 => Action::Tool { tool: (random.next() % 3) as u32, offset: 1 },
+        6 => Action::Tool { tool: (dice.roll() % 3) as u32, offset: 1 },
         _ => Action::Spindle {
-            state: if random.chance(5) { SpindleState::Stop } else { SpindleState::CounterClockwise },
-            speed: if random.chance(2) {
-                SpindleSpeed::Constant(Rpm(random.next() as u32))
+            state: if dice.one_in(5) { SpindleState::Stop } else { SpindleState::CounterClockwise },
+            speed: if dice.one_in(2) {
+                SpindleSpeed::Constant(Rpm(dice.roll() as u32))
             } else {
-                SpindleSpeed::Surface(SurfaceSpeed(any_length(random)))
+                SpindleSpeed::Surface(SurfaceSpeed(any_length(dice)))
             },
-            rpm_max: random.chance(2).then(|| Rpm((random.next() % 3) as u32 * 1000)),
+            rpm_max: dice.one_in(2).then(|| Rpm((dice.roll() % 3) as u32 * 1000)),
         },
     }
 }
@@ -354,15 +334,15 @@ fn gears(rate: &mut impl FnMut() -> f64, round: usize) -> Gears {
 
 #[test]
 fn nothing_makes_a_time_that_is_no_number() {
-    let mut random = Random(0x1dea_0006);
+    let mut dice = Dice::new(0x1dea_0006);
     for round in 0..400 {
-        let mut rate = || match random.next() % 8 {
+        let mut rate = || match dice.roll() % 8 {
             0 => 0.0,
             1 => f64::NAN,
             2 => f64::INFINITY,
             3 => -5.0,
             4 => f64::MIN_POSITIVE,
-            _ => random.between(1.0, 10_000.0),
+            _ => dice.between(1.0, 10_000.0),
         };
         let rates = MachineRates {
             rapid_x_mm_per_min: rate(),
@@ -407,7 +387,7 @@ fn nothing_makes_a_time_that_is_no_number() {
         let mut clock = Clock::new(at(10.0, 10.0), rates);
         let mut summary = Summary::new();
         for _ in 0..100 {
-            let command = Command::new(any_action(&mut random), Origin::line(1));
+            let command = Command::new(any_action(&mut dice), Origin::line(1));
             let timing = clock.advance(&command);
             summary.add(&command, &timing);
             let rpm = timing.rpm.map_or([0.0, 0.0], |rpm| [rpm.min, rpm.max]);
@@ -422,13 +402,13 @@ fn nothing_makes_a_time_that_is_no_number() {
 
 #[test]
 fn with_acceleration_too_every_command_gets_a_time() {
-    let mut random = Random(0x1dea_0008);
+    let mut dice = Dice::new(0x1dea_0008);
     for round in 0..200 {
         let rates = MachineRates { dynamics: Some(Dynamics::default()), ..MachineRates::default() };
         let mut schedule = Schedule::new(at(10.0, 10.0), rates);
         let mut timed = 0;
         for _ in 0..50 {
-            schedule.push(Command::new(any_action(&mut random), Origin::line(1)));
+            schedule.push(Command::new(any_action(&mut dice), Origin::line(1)));
         }
         schedule.finish();
         while let Some((command, timing)) = schedule.next_known() {
@@ -441,10 +421,10 @@ fn with_acceleration_too_every_command_gets_a_time() {
 
 #[test]
 fn causes_blocks_lines_operations_and_tools_add_up_to_the_same_time() {
-    let mut random = Random(0x1dea_0009);
+    let mut dice = Dice::new(0x1dea_0009);
     for round in 0..100 {
         let rates = MachineRates {
-            dynamics: random.chance(2).then(Dynamics::default),
+            dynamics: dice.one_in(2).then(Dynamics::default),
             auxiliary_times: AuxiliaryTimes::new([(10, 2.5)]),
             stop_s: 30.0,
             loading_s: 12.0,
@@ -454,8 +434,8 @@ fn causes_blocks_lines_operations_and_tools_add_up_to_the_same_time() {
         let (mut line, mut commands) = (1, 0);
         for _ in 0..200 {
             // Some lines make several commands, some run again.
-            line = if random.chance(3) { line } else { 1 + (random.next() % 30) as u32 };
-            schedule.push(Command::new(any_action(&mut random), Origin::line(line)));
+            line = if dice.one_in(3) { line } else { 1 + (dice.roll() % 30) as u32 };
+            schedule.push(Command::new(any_action(&mut dice), Origin::line(line)));
         }
         schedule.finish();
         let (mut summary, mut blocks) = (Summary::new(), BlockTimes::default());
@@ -504,10 +484,10 @@ fn lines_beyond_what_is_kept_are_summed() {
 #[test]
 fn the_same_program_twice_gives_the_same_bits() {
     let seconds = || {
-        let mut random = Random(0x1dea_0007);
+        let mut dice = Dice::new(0x1dea_0007);
         let mut clock = Clock::new(at(100.0, 100.0), MachineRates::default());
         for _ in 0..500 {
-            run(&mut clock, any_action(&mut random));
+            run(&mut clock, any_action(&mut dice));
         }
         clock.totals().total_s().to_bits()
     };

@@ -1,30 +1,10 @@
 //! Laws of the pace on seeded random paths: no limit is passed, nothing depends on how the path comes in, the
 //! operator may come between at any time.
 
+use turnwright_dice::Dice;
 use turnwright_motion::planner::{Feedrate, Pace, RunLimits};
 
 /// xorshift64*, seeded: a failure names its case.
-#[derive(Clone)]
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
-    }
-
-    fn part(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Between two positive values, all sizes alike.
-    fn size(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.part())
-    }
-}
-
 /// Length (0 for a corner), ordered speed, limit.
 type Piece = (f64, f64, f64);
 
@@ -36,20 +16,20 @@ struct Case {
 
 impl Case {
     fn random(seed: u64) -> Self {
-        let mut random = Random(0x9e37_79b9_7f4a_7c15 ^ (seed + 1).wrapping_mul(0x5851_f42d_4c95_7f2d));
-        let acceleration = random.size(200.0, 8000.0);
+        let mut dice = Dice::new(0x9e37_79b9_7f4a_7c15 ^ (seed + 1).wrapping_mul(0x5851_f42d_4c95_7f2d));
+        let acceleration = dice.size(200.0, 8000.0);
         let limits = RunLimits {
             acceleration_mm_per_s2: acceleration,
-            jerk_mm_per_s3: acceleration / random.size(0.004, 0.12),
+            jerk_mm_per_s3: acceleration / dice.size(0.004, 0.12),
         };
-        let longest = if random.next().is_multiple_of(2) { 200.0 } else { 2.0 };
+        let longest = if dice.roll().is_multiple_of(2) { 200.0 } else { 2.0 };
         let mut pieces = Vec::new();
-        for _ in 0..1 + random.next() % 40 {
-            let limit = random.size(0.5, 400.0);
-            let ordered = if random.next().is_multiple_of(3) { random.size(0.5, 400.0) } else { limit };
-            pieces.push((random.size(0.005, longest), ordered, limit));
-            if random.next().is_multiple_of(2) {
-                pieces.push((0.0, f64::INFINITY, random.size(0.1, 100.0)));
+        for _ in 0..1 + dice.roll() % 40 {
+            let limit = dice.size(0.5, 400.0);
+            let ordered = if dice.roll().is_multiple_of(3) { dice.size(0.5, 400.0) } else { limit };
+            pieces.push((dice.size(0.005, longest), ordered, limit));
+            if dice.roll().is_multiple_of(2) {
+                pieces.push((0.0, f64::INFINITY, dice.size(0.1, 100.0)));
             }
         }
         Self { limits, pieces }
@@ -182,8 +162,8 @@ fn the_same_bits_whatever_the_chunks_and_run_after_run() {
         };
         let step = pace.duration_s().expect("planned") / 300.0;
         let whole = played(&case, || usize::MAX, step, 256);
-        let mut random = Random(seed + 17);
-        let chunks = played(&case, || 1 + (random.next() % 5) as usize, step, 256);
+        let mut dice = Dice::new(seed + 17);
+        let chunks = played(&case, || 1 + (dice.roll() % 5) as usize, step, 256);
         let single = played(&case, || 1, step, 256);
         assert!(whole == chunks, "{seed}");
         assert!(whole == single, "{seed}");
@@ -194,13 +174,13 @@ fn the_same_bits_whatever_the_chunks_and_run_after_run() {
 #[test]
 fn a_way_of_one_speed_has_the_same_bits_whatever_the_chunks() {
     for seed in 0..2000 {
-        let mut random = Random(seed + 3);
-        let acceleration = random.size(200.0, 8000.0);
+        let mut dice = Dice::new(seed + 3);
+        let acceleration = dice.size(200.0, 8000.0);
         let limits = RunLimits {
             acceleration_mm_per_s2: acceleration,
-            jerk_mm_per_s3: acceleration / random.size(0.004, 0.12),
+            jerk_mm_per_s3: acceleration / dice.size(0.004, 0.12),
         };
-        let (way, speed) = (random.size(1e-3, 500.0), random.size(0.5, 400.0));
+        let (way, speed) = (dice.size(1e-3, 500.0), dice.size(0.5, 400.0));
         // Once at once, and once with a corner in it that holds nobody up: that goes through all passes.
         let planned = |pieces: &[(f64, f64)]| {
             let mut pace = Pace::with_capacity(8, limits);
@@ -227,10 +207,10 @@ fn a_way_of_one_speed_has_the_same_bits_whatever_the_chunks() {
 #[test]
 fn little_room_is_slower_but_safe() {
     for seed in 0..100 {
-        let mut random = Random(seed + 1);
+        let mut dice = Dice::new(seed + 1);
         let mut case = Case::random(seed);
         // Braking takes many more pieces than there is room for.
-        case.pieces = (0..400).map(|_| (0.02, 100.0 + random.part(), 300.0)).collect();
+        case.pieces = (0..400).map(|_| (0.02, 100.0 + dice.part(), 300.0)).collect();
         let places = played(&case, || usize::MAX, 1e-3, 16);
         let mut inspector = Inspector::new(1e-3, 0.0);
         for place in &places {
@@ -245,7 +225,7 @@ fn the_operator_may_come_between_at_any_time() {
     for seed in 0..600 {
         let case = Case::random(seed);
         let mut pace = case.pace();
-        let mut random = Random(seed * 31 + 7);
+        let mut dice = Dice::new(seed * 31 + 7);
         pace.plan();
         let step = (pace.duration_s().expect("planned") / 300.0).clamp(2e-4, 2e-3);
         let mut inspector = Inspector::new(step, 0.0);
@@ -253,9 +233,9 @@ fn the_operator_may_come_between_at_any_time() {
         let mut slowest_factor_allowed = f64::INFINITY;
         for tick in 0..60_000 {
             let time = f64::from(tick) * step;
-            if random.next().is_multiple_of(60) && tick < 20_000 {
-                let factor = if random.next().is_multiple_of(4) { 1.0 } else { random.size(0.1, 2.5) };
-                held = random.next().is_multiple_of(3);
+            if dice.roll().is_multiple_of(60) && tick < 20_000 {
+                let factor = if dice.roll().is_multiple_of(4) { 1.0 } else { dice.size(0.1, 2.5) };
+                held = dice.roll().is_multiple_of(3);
                 pace.interrupt(time, Feedrate::Override(factor), held);
                 pace.plan();
                 since = tick;
@@ -354,14 +334,14 @@ fn the_way_back_takes_as_long() {
 
 #[test]
 fn a_way_from_rest_to_rest_is_known_in_closed_form() {
-    let mut random = Random(99);
+    let mut dice = Dice::new(99);
     for _ in 0..2000 {
-        let acceleration = random.size(100.0, 10_000.0);
+        let acceleration = dice.size(100.0, 10_000.0);
         let limits = RunLimits {
             acceleration_mm_per_s2: acceleration,
-            jerk_mm_per_s3: acceleration / random.size(0.001, 0.1),
+            jerk_mm_per_s3: acceleration / dice.size(0.001, 0.1),
         };
-        let (way, speed) = (random.size(1e-4, 1000.0), random.size(0.1, 500.0));
+        let (way, speed) = (dice.size(1e-4, 1000.0), dice.size(0.1, 500.0));
         let mut pace = Pace::with_capacity(4, limits);
         pace.push(way, speed, 1e9).expect("room");
         pace.close();

@@ -4,6 +4,7 @@
 use turnwright_canon::{
     Action, Command, Dwell, Origin, PathMode, RapidPath, Shape, SpindleSpeed, SpindleState, Turn,
 };
+use turnwright_dice::Dice;
 use turnwright_motion::{
     Dynamics, Fluctuation, Kind, MachineRates, Panel, Player, RapidOverride, Sample, Schedule,
 };
@@ -87,57 +88,37 @@ fn inspect(samples: &[Sample], hz: f64, case: &dyn std::fmt::Debug) {
     }
 }
 
-/// xorshift64*, seeded.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn one_in(&mut self, count: u64) -> bool {
-        self.next().is_multiple_of(count)
-    }
-}
-
 /// A program of cuts, arcs, rapids and dwells, short and long.
 fn program(seed: u64) -> Vec<Action> {
-    let mut random = Random(seed * 77 + 5);
-    let surface = SpindleSpeed::Surface(SurfaceSpeed::from_m_per_min(random.between(20.0, 300.0) as u32));
+    let mut dice = Dice::new(seed * 77 + 5);
+    let surface = SpindleSpeed::Surface(SurfaceSpeed::from_m_per_min(dice.between(20.0, 300.0) as u32));
     let state = SpindleState::Clockwise;
     let mut actions = vec![Action::Spindle { state, speed: surface, rpm_max: Some(Rpm(3000)) }];
     let (mut x, mut z) = (30.0, 5.0);
-    let size = [8.0, 1.0, 0.1, 0.01][(random.next() % 4) as usize];
+    let size = [8.0, 1.0, 0.1, 0.01][(dice.roll() % 4) as usize];
     for _ in 0..60 {
-        let (dx, dz) = (size * random.between(-0.4, 0.4), size * random.between(-1.0, 0.5));
-        match random.next() % 12 {
+        let (dx, dz) = (size * dice.between(-0.4, 0.4), size * dice.between(-1.0, 0.5));
+        match dice.roll() % 12 {
             0 => actions.push(rapid(x + dx, z + dz, RapidPath::EachAxis)),
             1 => actions.push(rapid(x + dx, z + dz, RapidPath::Straight)),
-            2 if random.one_in(3) => {
+            2 if dice.one_in(3) => {
                 actions.push(Action::Dwell(Dwell::Time(Seconds(0.1))));
                 continue;
             }
-            3 if random.one_in(3) => {
-                let is_exact = random.one_in(2);
+            3 if dice.one_in(3) => {
+                let is_exact = dice.one_in(2);
                 let mode = if is_exact { PathMode::ExactStop } else { PathMode::Continuous };
                 actions.push(Action::PathMode(mode));
                 continue;
             }
             4..=6 => {
                 // Half a circle.
-                let turn = if random.one_in(2) { Turn::Clockwise } else { Turn::CounterClockwise };
+                let turn = if dice.one_in(2) { Turn::Clockwise } else { Turn::CounterClockwise };
                 let shape = Shape::Arc { turn, centre: at(x + dx / 2.0, z + dz / 2.0) };
                 let feed = Feed::PerRevolution(FeedPerRevolution(length(0.3)));
                 actions.push(Action::Feed { to: at(x + dx, z + dz), shape, feed, others: None });
             }
-            _ => actions.push(cut(x + dx, z + dz, random.between(50.0, 6000.0))),
+            _ => actions.push(cut(x + dx, z + dz, dice.between(50.0, 6000.0))),
         }
         (x, z) = (x + dx, z + dz);
     }
@@ -196,19 +177,19 @@ fn the_same_program_twice_gives_the_same_bits() {
 fn the_operator_changes_the_pace_within_all_limits() {
     for seed in 0..80 {
         let actions = program(seed);
-        let mut random = Random(seed + 1000);
+        let mut dice = Dice::new(seed + 1000);
         let mut panels = Vec::new();
         let mut time = 0.0;
         for _ in 0..30 {
-            time += random.between(0.0, 0.3);
+            time += dice.between(0.0, 0.3);
             panels.push((
                 time,
                 Panel {
-                    feed: random.between(0.0, 2.0),
-                    rapid: [0.02, 0.25, 0.5, 1.0].map(RapidOverride::Part)[(random.next() % 4) as usize],
-                    is_held: random.one_in(4),
-                    dry_run_mm_per_min: random.one_in(4).then_some(3000.0),
-                    single_block: random.one_in(5),
+                    feed: dice.between(0.0, 2.0),
+                    rapid: [0.02, 0.25, 0.5, 1.0].map(RapidOverride::Part)[(dice.roll() % 4) as usize],
+                    is_held: dice.one_in(4),
+                    dry_run_mm_per_min: dice.one_in(4).then_some(3000.0),
+                    single_block: dice.one_in(5),
                 },
             ));
         }
@@ -225,13 +206,13 @@ fn the_operator_changes_the_pace_within_all_limits() {
 #[test]
 fn a_dry_run_of_slow_cuts_keeps_the_corners() {
     for seed in 0..12 {
-        let mut random = Random(seed + 50);
+        let mut dice = Dice::new(seed + 50);
         let size = [3.0, 0.3, 0.03][(seed % 3) as usize];
         let (mut x, mut z) = (30.0, 5.0);
         let actions: Vec<_> = (0..200)
             .map(|_| {
-                (x, z) = (x + size * random.between(-1.0, 1.0), z + size * random.between(-1.0, 0.5));
-                cut(x, z, random.between(20.0, 60.0))
+                (x, z) = (x + size * dice.between(-1.0, 1.0), z + size * dice.between(-1.0, 0.5));
+                cut(x, z, dice.between(20.0, 60.0))
             })
             .collect();
         let panel = Panel { dry_run_mm_per_min: Some(6000.0), ..Panel::default() };
@@ -328,10 +309,10 @@ fn a_thread_is_one_helix_at_any_speed() {
 /// than a micrometre, at no tick and from no pass to the next, and no axis passes a limit.
 #[test]
 fn a_thread_is_one_helix_on_a_spindle_that_wobbles() {
-    let mut random = Random(2_400);
+    let mut dice = Dice::new(2_400);
     for rpm in (200..=2400).step_by(100) {
         // Two hundredths at most, so that the swing itself asks for less than the axis has left.
-        let fluctuation = Fluctuation { part: random.between(0.005, 0.02), hz: random.between(1.0, 5.0) };
+        let fluctuation = Fluctuation { part: dice.between(0.005, 0.02), hz: dice.between(1.0, 5.0) };
         let rates = MachineRates { fluctuation, ..rates() };
         let actions = [
             constant(rpm),

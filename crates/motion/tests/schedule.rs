@@ -4,6 +4,7 @@ use turnwright_canon::{
     Action, Command, Dwell, Origin, PathMode, RapidPath, Shape, SpindleSpeed, SpindleState, SpindleWatch,
     Turn,
 };
+use turnwright_dice::Dice;
 use turnwright_motion::{Clock, Dynamics, Kind, MachineRates, Schedule, SpeedWait, Timing};
 use turnwright_units::{
     Feed, FeedPerMinute, FeedPerRevolution, Length, Position, Radius, Rpm, Seconds, SurfaceSpeed, WorkTip,
@@ -154,30 +155,14 @@ fn a_facing_cut_takes_its_time_by_the_diameter_and_a_slow_spindle_lags() {
     assert!((cutting - 3.911).abs() < 0.03, "{cutting}");
 }
 
-/// xorshift64*, seeded.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
 /// A program of cuts, arcs, rapids and dwells.
 fn program(seed: u64) -> Vec<Action> {
-    let mut random = Random(seed * 77 + 5);
-    let mut actions = vec![turning(random.between(20.0, 300.0) as u32, 3000)];
+    let mut dice = Dice::new(seed * 77 + 5);
+    let mut actions = vec![turning(dice.between(20.0, 300.0) as u32, 3000)];
     let (mut x, mut z) = (30.0, 5.0);
     for _ in 0..40 {
-        let (dx, dz) = (random.between(-3.0, 3.0), random.between(-8.0, 4.0));
-        match random.next() % 12 {
+        let (dx, dz) = (dice.between(-3.0, 3.0), dice.between(-8.0, 4.0));
+        match dice.roll() % 12 {
             0 => actions.push(rapid(x + dx, z + dz, RapidPath::EachAxis)),
             1 => actions.push(rapid(x + dx, z + dz, RapidPath::Straight)),
             2 => {
@@ -185,20 +170,20 @@ fn program(seed: u64) -> Vec<Action> {
                 continue;
             }
             3 => {
-                let mode = [PathMode::ExactStop, PathMode::Continuous][(random.next() % 2) as usize];
+                let mode = [PathMode::ExactStop, PathMode::Continuous][(dice.roll() % 2) as usize];
                 actions.push(Action::PathMode(mode));
                 continue;
             }
             4..=6 => {
                 // Half a circle.
                 let turn =
-                    if random.next().is_multiple_of(2) { Turn::Clockwise } else { Turn::CounterClockwise };
+                    if dice.roll().is_multiple_of(2) { Turn::Clockwise } else { Turn::CounterClockwise };
                 let shape = Shape::Arc { turn, centre: at(x + dx / 2.0, z + dz / 2.0) };
                 let feed = Feed::PerRevolution(FeedPerRevolution(length(0.15)));
                 actions.push(Action::Feed { to: at(x + dx, z + dz), shape, feed, others: None });
             }
             7 | 8 => actions.push(per_rev(x + dx, z + dz, 0.2)),
-            _ => actions.push(cut(x + dx, z + dz, random.between(50.0, 4000.0))),
+            _ => actions.push(cut(x + dx, z + dz, dice.between(50.0, 4000.0))),
         }
         (x, z) = (x + dx, z + dz);
     }
@@ -233,11 +218,7 @@ fn mass_costs_time_and_the_lighter_the_less() {
 #[test]
 fn plain_cuts_take_what_any_cut_takes() {
     let watch = SpindleWatch { delay_ms: 0, reached_permille: 0, allowed_permille: 0, band: Rpm(0) };
-    let mut state = 1u64;
-    let mut random = move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        (state >> 40) as f64 / (1u64 << 24) as f64
-    };
+    let mut dice = Dice::new(1);
     let mut plain = 0;
     for round in 0..60 {
         let speed_wait = [SpeedWait::Order, SpeedWait::Cut, SpeedWait::Thread][round % 3];
@@ -253,27 +234,27 @@ fn plain_cuts_take_what_any_cut_takes() {
         let (mut x, mut z) = (30.0, 0.0);
         let mut program = vec![Action::Message(String::new().into())];
         while program.len() < 400 {
-            let kind = random();
-            (x, z) = (x + size * (random() - 0.5), z + size * (random() - 0.5));
-            let per_minute = Feed::PerMinute(FeedPerMinute(length(20.0 * 400f64.powf(random()))));
-            let per_turn = Feed::PerRevolution(FeedPerRevolution(length(0.05 + random())));
+            let kind = dice.part();
+            (x, z) = (x + size * (dice.part() - 0.5), z + size * (dice.part() - 0.5));
+            let per_minute = Feed::PerMinute(FeedPerMinute(length(20.0 * 400f64.powf(dice.part()))));
+            let per_turn = Feed::PerRevolution(FeedPerRevolution(length(0.05 + dice.part())));
             let feed = if kind < 0.5 { per_minute } else { per_turn };
             program.push(match kind {
                 _ if kind < 0.90 => Action::Feed { to: at(x, z), shape: Shape::Line, feed, others: None },
                 _ if kind < 0.93 => Action::Spindle {
-                    state: if random() < 0.8 {
+                    state: if dice.part() < 0.8 {
                         SpindleState::Clockwise
                     } else {
                         SpindleState::CounterClockwise
                     },
-                    speed: if random() < 0.8 {
-                        SpindleSpeed::Constant(Rpm((random() * 2000.0) as u32))
+                    speed: if dice.part() < 0.8 {
+                        SpindleSpeed::Constant(Rpm((dice.part() * 2000.0) as u32))
                     } else {
                         SpindleSpeed::Surface(SurfaceSpeed(length(150_000.0)))
                     },
                     rpm_max: None,
                 },
-                _ if kind < 0.95 => Action::Dwell(Dwell::Time(Seconds(random()))),
+                _ if kind < 0.95 => Action::Dwell(Dwell::Time(Seconds(dice.part()))),
                 _ if kind < 0.97 => rapid(x, z, RapidPath::Straight),
                 _ if kind < 0.98 => Action::PathMode(PathMode::ExactStop),
                 _ => Action::PathMode(PathMode::Continuous),
