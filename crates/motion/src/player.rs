@@ -3,8 +3,8 @@
 //! In: commands in order of execution, and what the operator does meanwhile ([`Panel`]). Out: a [`Sample`] a tick, at
 //! any rate, through a closure that is called as soon as a place is final.
 //!
-//! The player holds a few thousand legs and nothing that grows with the program. The same commands give the same
-//! samples, bit for bit.
+//! The player holds a few thousand legs and nothing that grows with the program. A tick allocates nothing; a chain of
+//! threads has its plan laid before its first tick. The same commands give the same samples, bit for bit.
 
 use std::collections::VecDeque;
 
@@ -15,7 +15,7 @@ use crate::clock::Clock;
 use crate::leg::{Leg, Place, X, Z};
 use crate::orders::leg_limit;
 use crate::planner::{Feedrate, Pace, RunLimits};
-use crate::run::CuttingRun;
+use crate::run::{CuttingRun, LEGS_MAX};
 use crate::smoother::Smoother;
 use crate::spindle::{Shift, SpindleAngle};
 use crate::tap::TapPace;
@@ -109,7 +109,7 @@ impl Player {
             legs: Vec::new(),
             has_others: false,
             mode: PathMode::Continuous,
-            blocks: VecDeque::new(),
+            blocks: VecDeque::with_capacity(LEGS_MAX),
             lanes: Box::new(std::array::from_fn(|_| Pace::with_capacity(LANE_CAPS, unit))),
             smoother: Smoother::new(dynamics.corner_s, 1.0 / rate_hz),
             spindle: SpindleAngle::default(),
@@ -593,6 +593,7 @@ impl Player {
         self.smoother.stand(&self.clock.place());
         let ends_here = self.clock.rates().panel_rules.thread_hold == ThreadHold::AtEnd && !chain.runs_on;
         self.is_hold_deferred = self.panel.is_held && !ends_here;
+        self.thread = chain.emptied();
     }
 
     /// In so many seconds an even spindle turns as far as this one.

@@ -113,6 +113,14 @@ impl ThreadChain {
         (!self.links.is_empty()).then(|| std::mem::take(self))
     }
 
+    /// One that none waits in, with the room of this one.
+    pub(crate) fn emptied(mut self) -> Self {
+        self.links.clear();
+        self.stretches.clear();
+        self.lines.clear();
+        Self { links: self.links, stretches: self.stretches, lines: self.lines, ..Self::default() }
+    }
+
     /// Whether it changes its direction.
     pub(crate) fn is_bent(&self) -> bool {
         self.links.len() > 1 || self.links.iter().any(|link| link.arc.is_some())
