@@ -52,8 +52,7 @@ pub(crate) fn machined(
     }
     // What the program prints was written by the first run.
     let options = Machine { program_output: None, ..options.clone() };
-    let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
-    let machine = machine.limited_by(&session.control.parameters);
+    let machine = session.machine()?;
     let rates =
         RapidRates { x_mm_per_min: machine.rapid_x_mm_per_min, z_mm_per_min: machine.rapid_z_mm_per_min };
     let mut execution = Execution::new(text, session, &options)?;

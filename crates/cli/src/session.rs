@@ -104,6 +104,12 @@ impl Session {
         Ok(Self { control, reason, setup, setup_path, warnings })
     }
 
+    /// The machine of the setup, as the parameters limit it.
+    pub(crate) fn machine(&self) -> Result<turnwright_control::Machine, Finding> {
+        let machine = self.setup.machine().map_err(|fault| self.setup_fault(&fault))?;
+        Ok(machine.limited_by(&self.control.parameters))
+    }
+
     /// A setup whose machine or values make no sense.
     pub(crate) fn setup_fault(&self, fault: &SetupFault) -> Finding {
         invalid_setup(self.setup_path.as_deref().unwrap_or(Path::new("--setup")), fault)

@@ -201,8 +201,7 @@ fn find(text: &ProgramText, options: &Check, printer: &Printer) -> Vec<Finding> 
         let checked = checks.finish(&session.setup);
         // The clock tells where a thread starts too close and where the spindle strays.
         let start = execution.interpreter().position();
-        let mut measure = session.setup.machine().ok().map(|machine| {
-            let machine = machine.limited_by(&session.control.parameters);
+        let mut measure = session.machine().ok().map(|machine| {
             let parameters = &session.control.parameters;
             let rates = rates(&machine, parameters, options.machine.optional_stop);
             Measure::new(start, rates, Kept::default())

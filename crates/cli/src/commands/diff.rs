@@ -109,8 +109,7 @@ impl Side {
     fn new(path: &Path, options: &Machine, speech: Speech) -> Result<Self, Fault> {
         let text = ProgramText::open(path, speech)?;
         let session = Session::choose(&text, options, speech)?;
-        let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
-        let machine = machine.limited_by(&session.control.parameters);
+        let machine = session.machine()?;
         let mut execution = Execution::new(&text, &session, options)?;
         let start = execution.interpreter().position();
         let (mut steps, mut checks) = (Steps::new(start), Checks::new(start));

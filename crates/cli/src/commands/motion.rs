@@ -27,8 +27,7 @@ pub(crate) fn run(options: &Motion, printer: &Printer) -> Result<Status, Fault> 
     let speech = printer.speech;
     let text = ProgramText::open(&options.file, speech)?;
     let session = Session::choose(&text, &options.machine, speech)?;
-    let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
-    let machine = machine.limited_by(&session.control.parameters);
+    let machine = session.machine()?;
     let mut execution = Execution::new(&text, &session, &options.machine)?;
     let rates = rates(&machine, &session.control.parameters, options.machine.optional_stop);
     let rates = options.panel.man(rates, &session.control)?;

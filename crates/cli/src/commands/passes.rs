@@ -47,8 +47,7 @@ pub(super) fn run(options: &Explain, line: u32, printer: &Printer) -> Result<Sta
     let block = clean(String::from_utf8_lossy(&block).trim()).to_string();
     let shown = Shown { cycle: &cycle, parameters, decimals: execution.interpreter().decimals(), speech };
     if let Some(target) = &options.output {
-        let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
-        let machine = machine.limited_by(&session.control.parameters);
+        let machine = session.machine()?;
         let again = Execution::new(&text, &session, &options.machine)?;
         let title = format!("{} {}{}{block}", cycle.label, shown.in_line(line), speech.get("colon"));
         draw(target, again, &cycle, &machine, title, speech)?;

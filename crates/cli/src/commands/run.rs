@@ -46,8 +46,7 @@ pub(crate) fn run(options: &Run, printer: &Printer) -> Result<Status, Fault> {
     let speech = printer.speech;
     let text = ProgramText::open(&options.file, printer.speech)?;
     let session = Session::choose(&text, &options.machine, speech)?;
-    let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
-    let machine = machine.limited_by(&session.control.parameters);
+    let machine = session.machine()?;
     let mut execution = Execution::new(&text, &session, &options.machine)?;
     let rates = rates(&machine, &session.control.parameters, options.machine.optional_stop);
     let writes = options.out.is_some();

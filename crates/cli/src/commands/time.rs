@@ -73,8 +73,7 @@ fn one(path: &Path, options: &Time, printer: &Printer) -> Result<Status, Fault> 
     let speech = printer.speech;
     let text = ProgramText::open(path, speech)?;
     let session = Session::choose(&text, &options.machine, speech)?;
-    let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
-    let machine = machine.limited_by(&session.control.parameters);
+    let machine = session.machine()?;
     let mut execution = Execution::new(&text, &session, &options.machine)?;
     let wanted = form(options.output.as_ref());
     let start = execution.interpreter().position();
@@ -228,8 +227,7 @@ fn timed(candidate: &Candidate, options: &Time, printer: &Printer) -> Timed {
     let result = caught(|| -> Result<Vec<Finding>, Finding> {
         let session = Session::choose(&text, &options.machine, printer.speech)?;
         control = session.control.name;
-        let machine = session.setup.machine().map_err(|fault| session.setup_fault(&fault))?;
-        let machine = machine.limited_by(&session.control.parameters);
+        let machine = session.machine()?;
         let mut execution = Execution::new(&text, &session, &options.machine)?;
         let rates = rates(&machine, &session.control.parameters, options.machine.optional_stop);
         let rates = options.panel.man(rates, &session.control)?;
