@@ -433,13 +433,75 @@ test("a long program: the section follows at once as far as it is known, and exa
   for (const step of [9010, 100, 17000, 9000]) await page.evaluate((step) => turnwright.goTo(step), step);
   await page.waitForFunction((exact) => document.getElementById("layer-stock").toDataURL() === exact, exact);
   // The list of the program, too long to be all there, comes to the row when the hand rests.
-  const line = await page.evaluate(() => { for (let step = 5000; step <= 9900; step += 100) turnwright.goTo(step); return turnwright.currentLine; });
-  assert.equal(await page.locator(`.row[data-line="${line}"]`).count(), 0);
+  const { line, isThere } = await page.evaluate(() => {
+    for (let step = 5000; step <= 9900; step += 100) turnwright.goTo(step);
+    const line = turnwright.currentLine;
+    return { line, isThere: document.querySelector(`.row[data-line="${line}"]`) !== null };
+  });
+  assert.equal(isThere, false);
   await page.waitForFunction((line) => document.querySelector(".row.current")?.dataset.line === String(line), line);
   await page.evaluate(() => turnwright.goTo(9000));
   // Cuts in the same direction are taken away together where that is as exact: the last moment agrees.
   const areas = await page.evaluate(() => [8999, 9000, 9001].map((step) => (turnwright.goTo(step), turnwright.sectionArea)));
   assert.ok(areas[0] >= areas[1] && areas[1] >= areas[2] && Math.abs(areas[1] - area) < 0.02, `${areas} ${area}`);
+});
+
+test("a step of the slider costs as many comparisons as the section has stops, not their square", async () => {
+  // Fine waves crossed by passes of another phase leave rings upon rings in thin slabs.
+  const waves = Array.from({ length: 40 }, (_, pass) => [`G0 X${52 + pass % 2} Z1.`, `G1 X${(48 - 0.1 * pass).toFixed(3)} F0.2`,
+    ...Array.from({ length: 50 }, (_, n) => `X${(48 - 0.1 * pass + 0.4 * Math.sin(n / 2 + pass)).toFixed(3)} Z${(-n / 2).toFixed(3)}`), "G0 X60."].join("\n"));
+  await open(reportOf("waves", DRAWN.replace(/G0 X52[^]*M30/, `${waves.join("\n")}\nM30`)));
+  const found = await page.evaluate(async () => {
+    const all = [];
+    for (let share = 0.05; share < 1; share += 0.05) {
+      const before = turnwright.work;
+      turnwright.goTo(Math.floor(share * turnwright.steps));
+      const now = turnwright.work;
+      all.push({ stops: now.stops - before.stops, corners: now.corners - before.corners, rings: turnwright.rings });
+    }
+    return all;
+  });
+  for (const { stops, corners, rings } of found) {
+    assert.ok(stops > 0 && corners > 0, "each step draws the section anew");
+    // A ring has two stops at both its ends; the same section is drawn once a step.
+    assert.ok(stops <= 4 * rings, `${stops} stops of ${rings} rings`);
+    assert.ok(corners <= 4 * rings, `${corners} corners of ${rings} rings`);
+  }
+  const { rings } = found.at(-1);
+  assert.ok(rings > 20, `${rings} rings`);
+  // The same moment again is not drawn again.
+  const again = await page.evaluate(() => { const before = turnwright.work; turnwright.goTo(turnwright.step); return [before, turnwright.work]; });
+  assert.deepEqual(again[1], again[0]);
+});
+
+test("faces of many rings upon one another are those of the plain rule, and each stop is passed once", async () => {
+  await open(drawn);
+  const differences = await page.evaluate(() => {
+    const edge = (x) => ({ z: 0, x, s: 0 });
+    let seed = 1;
+    const die = () => { seed = (seed * 48271) % 2147483647; return seed / 2147483647; };
+    const column = () => { const all = []; let x = 0; for (let n = Math.floor(die() * 8); n > 0; n--) { const floor = x + Math.floor(die() * 3), roof = floor + 1 + Math.floor(die() * 3); all.push([floor, roof]); x = roof; } return all; };
+    const isIn = (rings, x) => rings.some(([floor, roof]) => floor < x && x < roof);
+    let wrong = 0, faces = 0;
+    for (let n = 0; n < 2000; n++) {
+      const sides = [column(), column()], found = new Map();
+      const slabs = sides.map((rings, at) => ({ from: at, to: at + 1, rings: rings.map(([a, b]) => [edge(a), edge(b)]) }));
+      uprightFaces(slabs, (z, a, b, way) => { if (z === 1) for (let x = a; x < b; x++) found.set(x, way); faces++; });
+      for (let x = 0; x < 50; x++) {
+        const [before, behind] = sides.map((rings) => isIn(rings, x + 0.5));
+        if ((found.get(x) ?? 0) !== (before === behind ? 0 : before ? 1 : -1)) wrong++;
+      }
+    }
+    // Two thousand rings against two thousand that lie half a ring higher.
+    const slabs = [0, 0.5].map((off, at) => ({ from: at, to: at + 1, rings: Array.from({ length: 2000 }, (_, n) => [edge(2 * n + off), edge(2 * n + 1 + off)]) }));
+    const before = turnwright.work.stops;
+    uprightFaces(slabs, () => {});
+    return { wrong, faces, stops: turnwright.work.stops - before };
+  });
+  assert.equal(differences.wrong, 0);
+  assert.ok(differences.faces > 5000);
+  // All of one slab where it begins, of both where they meet, of the other where it ends.
+  assert.equal(differences.stops, 4000 + 8000 + 4000);
 });
 
 test("--no-3d leaves three.js out, and the button with it", async () => {

@@ -131,7 +131,7 @@ const partDrawing = (frame, model) => {
     const z0 = toZ(0), z1 = toZ(frame.width);
     const seen = (all) => all.filter(({ from, to }) => to > z0 && from < z1);
     const paint = (all, fillColour, edgeColour, dash) => {
-      const { fill, edges } = sectionPaths(seen(all), view.pxPerMm, (z, x) => [toPxX(z), toPxY(x)]);
+      const { fill, edges } = sectionPaths(seen(all), view.pxPerMm, toPxX, toPxY);
       c.fillStyle = fillColour;
       c.fill(bothHalves(fill));
       c.strokeStyle = edgeColour;

@@ -327,73 +327,98 @@ const ringsAt = (slabs, z) => {
   return slab ? slab.rings.map(([floor, roof]) => [edgeAt(floor, z), edgeAt(roof, z)]) : [];
 };
 
+// What drawing a section has cost, in steps that do not depend on the machine; for tests.
+const sectionWork = { stops: 0, corners: 0 };
+
 // Upright faces: where material is on one side of a Z only. Of each its Z, from and to along X, and where its air is: 1
-// towards higher Z, -1 towards lower.
+// towards higher Z, -1 towards lower. Both sides are walked along together, from the axis outwards: behind an odd number
+// of stops, floors and roofs in turn, there is material.
 const uprightFaces = (slabs, each) => {
   const LEAST_MM = 1e-6;
-  const ringsOf = (slab, z) => slab.rings.map(([floor, roof]) => [edgeAt(floor, z), edgeAt(roof, z)]);
-  const inside = (rings, x) => rings.some(([floor, roof]) => floor < x && x < roof);
-  const between = (z, left, right) => {
-    const isSame = left.length === right.length
-      && left.every((ring, n) => Math.abs(ring[0] - right[n][0]) < LEAST_MM && Math.abs(ring[1] - right[n][1]) < LEAST_MM);
-    if (isSame) return;
-    const stops = [...left, ...right].flat().sort((a, b) => a - b);
-    for (let n = 1; n < stops.length; n++) {
-      const a = stops[n - 1], b = stops[n], middle = (a + b) / 2;
-      if (b - a < LEAST_MM) continue;
-      const before = inside(left, middle);
-      if (before !== inside(right, middle)) each(z, a, b, before ? 1 : -1);
+  const left = [], right = [];
+  const readStops = (stops, { rings }, z) => {
+    stops.length = 0;
+    for (const [floor, roof] of rings) stops.push(edgeAt(floor, z), edgeAt(roof, z));
+  };
+  const between = (z, before, behind) => {
+    readStops(left, before, z);
+    readStops(right, behind, z);
+    if (left.length === right.length && left.every((x, n) => Math.abs(x - right[n]) < LEAST_MM)) return;
+    let i = 0, j = 0, a = Infinity;
+    while (i < left.length || j < right.length) {
+      const b = j >= right.length || left[i] <= right[j] ? left[i] : right[j];
+      if (b - a >= LEAST_MM && i % 2 !== j % 2) each(z, a, b, i % 2 === 1 ? 1 : -1);
+      while (left[i] <= b) i++;
+      while (right[j] <= b) j++;
+      a = b;
+      sectionWork.stops++;
     }
   };
-  slabs.forEach((slab, n) => {
-    const before = slabs[n - 1], touches = before && Math.abs(before.to - slab.from) < 1e-9;
-    if (touches) between(slab.from, ringsOf(before, before.to), ringsOf(slab, slab.from));
+  const AIR = { rings: [] };
+  let before = null;
+  for (const slab of slabs) {
+    if (before && Math.abs(before.to - slab.from) < 1e-9) between(slab.from, before, slab);
     else {
-      if (before) between(before.to, ringsOf(before, before.to), []);
-      between(slab.from, [], ringsOf(slab, slab.from));
+      if (before) between(before.to, before, AIR);
+      between(slab.from, AIR, slab);
     }
-  });
-  const last = slabs.at(-1);
-  if (last) between(last.to, ringsOf(last, last.to), []);
+    before = slab;
+  }
+  if (before) between(before.to, before, AIR);
 };
 
-// A section as two paths of the canvas: what is filled, and its edges. `place` puts Z and X on the canvas.
-const sectionPaths = (slabs, pxPerMm, place) => {
+// A section as two paths of the canvas: what is filled, and its edges. `toPxX` puts Z on the canvas, `toPxY` a radius.
+const sectionPaths = (slabs, pxPerMm, toPxX, toPxY) => {
   const fill = new Path2D(), edges = new Path2D(), tolerance = 0.15 / pxPerMm, near = 0.3;
   let chains = [], before = null;
+  // The sides of a chain are corners, three numbers each: across, down, and whether an edge leads there.
   const close = () => {
     for (const { floor, roof } of chains) {
-      floor.forEach(([x, y], n) => (n === 0 ? fill.moveTo(x, y) : fill.lineTo(x, y)));
-      for (let n = roof.length - 1; n >= 0; n--) fill.lineTo(roof[n][0], roof[n][1]);
+      // Both sides one corner each: nothing to be seen.
+      if (floor.length === 3 && roof.length === 3) continue;
+      sectionWork.corners += (floor.length + roof.length) / 3;
+      fill.moveTo(floor[0], floor[1]);
+      for (let n = 3; n < floor.length; n += 3) fill.lineTo(floor[n], floor[n + 1]);
+      for (let n = roof.length - 3; n >= 0; n -= 3) fill.lineTo(roof[n], roof[n + 1]);
       fill.closePath();
-      for (const list of [floor, roof]) for (const [x, y, drawn] of list) drawn ? edges.lineTo(x, y) : edges.moveTo(x, y);
+      for (const side of [floor, roof]) for (let n = 0; n < side.length; n += 3)
+        side[n + 2] ? edges.lineTo(side[n], side[n + 1]) : edges.moveTo(side[n], side[n + 1]);
     }
     chains = [];
   };
-  // Adds an edge to a side of a chain, without what is too small to be seen; edges on the axis are none.
-  const follow = (list, edge, from, to) => {
-    const isAxis = edge.r === undefined && edge.s === 0 && edge.x < 1e-9;
-    edgePlaces(edge, from, to, tolerance).forEach(([z, radius], n) => {
-      const [x, y] = place(z, radius), last = list.at(-1);
-      const goesOn = last && Math.abs(last[0] - x) + Math.abs(last[1] - y) <= near;
-      if (!goesOn) list.push([x, y, n > 0 && !isAxis]);
-    });
+  // Adds a corner to a side of a chain, unless it is too near the last one to be seen.
+  const put = (side, z, radius, drawn) => {
+    const x = toPxX(z), y = toPxY(radius), last = side.length - 3;
+    if (last < 0 || Math.abs(side[last] - x) + Math.abs(side[last + 1] - y) > near) side.push(x, y, drawn);
+  };
+  // Adds an edge to a side of a chain; edges on the axis are none.
+  const follow = (side, edge, from, to) => {
+    const a = edgeAt(edge, from), b = edgeAt(edge, to), isLine = edge.r === undefined;
+    // A short stretch of an arc is its chord: the commonest edge of all, told without its angles.
+    if (isLine || (to - from) ** 2 + (b - a) ** 2 <= 4 * tolerance * (2 * Math.abs(edge.r) - tolerance)) {
+      put(side, from, a, 0);
+      put(side, to, b, isLine && edge.s === 0 && edge.x < 1e-9 ? 0 : 1);
+    } else edgePlaces(edge, from, to, tolerance).forEach(([z, radius], n) => put(side, z, radius, n > 0 ? 1 : 0));
   };
   for (const slab of slabs) {
     const touches = before && Math.abs(before.to - slab.from) < 1e-9;
     if (!touches || before.rings.length !== slab.rings.length) close();
-    slab.rings.forEach(([floor, roof], k) => {
+    for (let k = 0; k < slab.rings.length; k++) {
       const chain = (chains[k] ??= { floor: [], roof: [] });
-      follow(chain.floor, floor, slab.from, slab.to);
-      follow(chain.roof, roof, slab.from, slab.to);
-    });
+      follow(chain.floor, slab.rings[k][0], slab.from, slab.to);
+      follow(chain.roof, slab.rings[k][1], slab.from, slab.to);
+    }
     before = slab;
   }
   close();
+  // Faces that meet are one.
+  let atZ = NaN, top = NaN;
   uprightFaces(slabs, (z, a, b) => {
     if ((b - a) * pxPerMm < 0.05) return;
-    edges.moveTo(...place(z, a));
-    edges.lineTo(...place(z, b));
+    if (z !== atZ || a !== top) edges.moveTo(toPxX(z), toPxY(a));
+    edges.lineTo(toPxX(z), toPxY(b));
+    atZ = z;
+    top = b;
   });
   return { fill, edges };
 };

@@ -597,9 +597,9 @@
     }
   };
   // The list goes along with the moment that is shown: a few times a second while it plays, and in a list too long to be
-  // all there when the hand rests, for making its rows takes longer than all the rest of a step.
+  // all there when the hand rests, for making its rows and finding where it stands takes longer than all the rest of a step.
   const FOLLOW_MS = 200;
-  let following = 0, steppedAt = 0;
+  let following = 0;
   const followInList = () => {
     clearTimeout(following);
     if (!isOnTheWay()) return;
@@ -608,9 +608,7 @@
       scrollTo(path.line[currentMove()]);
       scrolledAt = performance.now();
     };
-    const lately = performance.now() - FOLLOW_MS;
-    const waits = playing ? scrolledAt > lately : run.program.length > ROWS_PLAIN && steppedAt > lately;
-    steppedAt = performance.now();
+    const waits = playing ? scrolledAt > performance.now() - FOLLOW_MS : run.program.length > ROWS_PLAIN;
     if (waits) following = setTimeout(() => { follow(); markRows(); }, FOLLOW_MS);
     else follow();
   };
@@ -887,6 +885,7 @@
     get sectionArea() { return model && sectionArea(model.sectionAt(step, part).slabs); },
     diametersAt: (z) => model && ringsAt(model.sectionAt(step, part).slabs, z).map((ring) => ring.map((x) => 2 * x)),
     get moments() { return model?.moments.length ?? 0; },
+    get work() { return { ...sectionWork }; }, get rings() { return model ? model.sectionAt(step, part).slabs.reduce((sum, { rings }) => sum + rings.length, 0) : 0; },
     marks: () => marks.map(({ x, z, at }) => {
       const r = picture.getBoundingClientRect();
       return { finding: at, x: r.left + picture.clientLeft + toPxX(z), y: r.top + picture.clientTop + toPxY(x) };
