@@ -62,7 +62,7 @@ const DRAG_MM: f64 = 0.5;
 pub const CERTAIN_MM: f64 = 1.0;
 
 /// Rapids through an assumed stock that are held against the finished part.
-const DOUBTS_MAX: usize = 200;
+const DOUBTS_MAX: usize = 100_000;
 
 /// What is cut below a figure that is finished is told from here on, mm: above all rounding of its corners.
 pub const FIGURE_GOUGE_MM: f64 = 0.01;
@@ -432,14 +432,16 @@ impl PartRun {
 
     /// Tells of rapids that pass through the finished part: that was there all the time, whatever the stock was.
     fn settle_doubts(&mut self) {
-        for Doubt { from, command, number, tool } in std::mem::take(&mut self.doubts) {
-            let Some(shape) = self.tools.get(&tool) else { continue };
-            let mut again = Machining::new(self.machining.part().clone(), from, self.rates);
-            again.set_tool(tool, shape);
-            let call = Action::Tool { tool, offset: 0 };
-            again.advance(&Command::new(call, command.origin), &mut |_| {});
-            self.notebook.tool = tool;
-            let notebook = &mut self.notebook;
+        let Some(first) = self.doubts.first() else { return };
+        let part = self.machining.part().clone();
+        let mut again = Machining::new(part, first.from, self.rates).sparing_at_rapid();
+        self.tools.iter().for_each(|(station, tool)| again.set_tool(*station, tool));
+        let notebook = &mut self.notebook;
+        for Doubt { from, command, number, tool } in self.doubts.drain(..) {
+            for ahead in [Action::Tool { tool, offset: 0 }, Action::Relocate { to: from, others: None }] {
+                again.pass_over(&Command::new(ahead, command.origin));
+            }
+            notebook.tool = tool;
             again.advance(&command, &mut |event| {
                 let is_deep =
                     event.contact.is_some_and(|contact| contact.depth_mm >= CERTAIN_MM - ROUNDING_MM);

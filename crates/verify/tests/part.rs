@@ -117,6 +117,19 @@ fn a_rapid_through_the_finished_part_is_told_whatever_the_stock_was() {
 }
 
 #[test]
+fn many_rapids_through_an_assumed_stock_hide_none_through_the_part() {
+    let mut text = String::from("O1\nT0101\nG97 S500 M03\nG00 X60. Z2.\nX30.\nG01 Z-20. F0.2\nX50.\n");
+    // A bar that is guessed too thick: what these meet is cut later.
+    for _ in 0..500 {
+        text.push_str("G00 Z-10.\nX28.\nX60.\n");
+    }
+    text.push_str("G00 Z2.\nX20.\nG01 Z-20. F0.2\nX50.\nG00 X60.\nZ-10.\nX10.\nX60.\nM30\n");
+    let told = found(&text, "");
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(told.iter().all(|one| one.0 == "rapid-into-stock" && one.2 > 1_500), "{told:?}");
+}
+
+#[test]
 fn the_chuck_is_told() {
     // The jaws begin at Z-60.
     let text = "O1\nT0101\nG97 S500 M03\nG00 X46. Z2.\nG01 Z-65. F0.2\nX52.\nG00 X160.\nZ5.\nM30\n";
