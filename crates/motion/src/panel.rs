@@ -86,22 +86,22 @@ impl Panel {
     pub(crate) fn cutting(&self, mode: PathMode) -> (Feedrate, bool) {
         match self.dry_run_mm_per_min {
             _ if mode == PathMode::Tapping => (Feedrate::Override(1.0), false),
-            Some(mm_per_min) => (Feedrate::Fixed(mm_per_min / 60.0), self.is_held),
-            None => (Feedrate::Override(self.feed), self.is_held || self.feed <= 0.0),
+            Some(mm_per_min) => standing_at_none(Feedrate::Fixed(mm_per_min / 60.0), self.is_held),
+            None => standing_at_none(Feedrate::Override(self.feed), self.is_held),
         }
     }
 
     /// The same of rapids; on each mm or degree of the way the quickest axis moves by `per_way`.
     pub(crate) fn rapid(&self, rules: &PanelRules, per_way: f64) -> (Feedrate, bool) {
         let dry = self.dry_run_mm_per_min.filter(|_| rules.dry_rapids);
-        let fixed = |per_min: f64| (Feedrate::Fixed(per_min / 60.0 / per_way), per_min);
-        let (feedrate, speed) = match (dry, self.rapid) {
+        let fixed = |per_min: f64| Feedrate::Fixed(per_min / 60.0 / per_way);
+        let feedrate = match (dry, self.rapid) {
             (Some(dry), _) => fixed(dry),
             (None, RapidOverride::Lowest) => fixed(rules.rapid_lowest_per_min),
-            (None, RapidOverride::Part(part)) => (Feedrate::Override(part), part),
+            (None, RapidOverride::Part(part)) => Feedrate::Override(part),
         };
-        let stands = speed <= 0.0 || dry.is_none() && rules.rapids_heed_feed && self.feed <= 0.0;
-        (feedrate, self.is_held || stands)
+        let stands = dry.is_none() && rules.rapids_heed_feed && self.feed <= 0.0;
+        standing_at_none(feedrate, self.is_held || stands)
     }
 
     /// A rapid rate as it makes it, per minute; 0 while rapids stand.
@@ -134,5 +134,13 @@ impl Panel {
     /// The speed of threads and taps in a dry run that acts on them, mm/min.
     pub(crate) fn dry_thread(&self, rules: &PanelRules) -> Option<f64> {
         self.dry_run_mm_per_min.filter(|_| rules.dry_threads)
+    }
+}
+
+/// A speed of nothing is a hold: as a speed it would be crept along for ever, also behind its end.
+fn standing_at_none(feedrate: Feedrate, is_held: bool) -> (Feedrate, bool) {
+    match feedrate {
+        Feedrate::Override(speed) | Feedrate::Fixed(speed) if speed <= 0.0 => (Feedrate::Override(1.0), true),
+        _ => (feedrate, is_held),
     }
 }

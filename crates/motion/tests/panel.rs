@@ -291,6 +291,30 @@ fn a_hold_stops_the_time_of_a_dwell_where_the_control_says_so() {
 }
 
 #[test]
+fn an_override_of_nothing_is_a_hold_and_what_follows_goes_on_at_full_speed() {
+    let zero = Panel { feed: 0.0, rapid: RapidOverride::Part(0.0), ..Panel::default() };
+    let dry = Panel { dry_run_mm_per_min: Some(0.0), ..Panel::default() };
+    let lowest = Panel { feed: 0.0, rapid: RapidOverride::Lowest, ..Panel::default() };
+    let ways = [cut(30.0, -25.0, per_minute(1200.0)), rapid(30.0, -400.0, RapidPath::EachAxis)];
+    for (way, panel) in [(0, zero), (0, dry), (0, lowest), (1, zero), (1, lowest)] {
+        let commands = [ways[way].clone()];
+        let rates = rates(Panel::default(), PanelRules::default());
+        let (usual, _) = played(&commands, rates, &[]);
+        let (held, _) = played(
+            &commands,
+            rates,
+            &[(0.5, Panel { is_held: true, ..Panel::default() }), (3.5, Panel::default())],
+        );
+        let (samples, is_stuck) = played(&commands, rates, &[(0.5, panel), (3.5, Panel::default())]);
+        assert!(!is_stuck && samples == held, "{way} {panel:?}: {} {}", samples.len(), held.len());
+        assert!(
+            samples.len() > usual.len() + 2_900 && samples.len() < usual.len() + 3_300,
+            "{way} {panel:?}"
+        );
+    }
+}
+
+#[test]
 fn nothing_begins_while_the_operator_holds() {
     let commands = [
         action(Action::Tool { tool: 2, offset: 2 }),
