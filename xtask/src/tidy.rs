@@ -151,6 +151,39 @@ const BANNED_BEFORE_EXPORT: &[(&str, &str)] =
 /// Words that only `units` has: elsewhere lengths become floats by a function with a name.
 const BANNED_OUTSIDE_UNITS: &[(&str, &str)] = &[(".nm() as f64", "use Length::to_mm")];
 
+/// Crates whose numbers have the same bits on every machine.
+const SAME_BITS: &[&str] = &["units", "geometry", "canon", "motion"];
+
+const OF_PLATFORM: &str = "its bits are those of the platform: use the crate libm";
+
+/// Words that those have not: what `std` takes from the platform, rounds once where others round twice, or shuffles.
+const BANNED_IN_SAME_BITS: &[(&str, &str)] = &[
+    (".sin(", OF_PLATFORM),
+    (".cos(", OF_PLATFORM),
+    (".sin_cos(", OF_PLATFORM),
+    (".tan(", OF_PLATFORM),
+    (".asin(", OF_PLATFORM),
+    (".acos(", OF_PLATFORM),
+    (".atan(", OF_PLATFORM),
+    (".atan2(", OF_PLATFORM),
+    (".sinh(", OF_PLATFORM),
+    (".cosh(", OF_PLATFORM),
+    (".tanh(", OF_PLATFORM),
+    (".exp(", OF_PLATFORM),
+    (".exp_m1(", OF_PLATFORM),
+    (".ln(", OF_PLATFORM),
+    (".ln_1p(", OF_PLATFORM),
+    (".log10(", OF_PLATFORM),
+    (".log2(", OF_PLATFORM),
+    (".powf(", OF_PLATFORM),
+    (".powi(", "in which order it multiplies nobody says: multiply"),
+    (".hypot(", OF_PLATFORM),
+    (".cbrt(", OF_PLATFORM),
+    (".mul_add(", "multiply and add, each rounded"),
+    ("HashMap", "its order is another in each run: use a BTreeMap or a Vec"),
+    ("HashSet", "its order is another in each run: use a BTreeSet or a Vec"),
+];
+
 /// Names of controls: they stand in `data/`.
 const CONTROLS: &[&str] = &["fanuc", "gsk"];
 
@@ -176,6 +209,9 @@ fn check_rust(file: &File, faults: &mut Vec<Fault>) {
     }
     if folder != "units" {
         report(file, &source.bare, BANNED_OUTSIDE_UNITS, faults);
+    }
+    if SAME_BITS.contains(&folder) {
+        report(file, &source.bare, BANNED_IN_SAME_BITS, faults);
     }
     for (index, line) in source.code.lines().enumerate() {
         let lower = line.to_ascii_lowercase();
@@ -228,6 +264,14 @@ mod tests {
         let text = "//! A.\nfn a() {\n    println!(\"b\");\n    eprint!(\"println!\");\n}\n";
         assert_eq!(rust("crates/canon/src/a.rs", text), ["3: `println!`", "4: `eprint!`"]);
         assert!(rust("crates/cli/src/a.rs", text).is_empty());
+    }
+
+    #[test]
+    fn numbers_of_motion_have_the_same_bits_everywhere() {
+        let text = "//! A.\nfn a(b: f64) -> f64 { libm::sin(b) + b.hypot(b).sqrt() + b.powi(2) }\n#[cfg(test)]\nmod tests {\n\
+                    fn c() -> f64 { 1f64.sin() }\n}\n";
+        assert_eq!(rust("crates/motion/src/a.rs", text), ["2: `.powi(`", "2: `.hypot(`"]);
+        assert!(rust("crates/export/src/a.rs", text).is_empty());
     }
 
     #[test]

@@ -137,8 +137,8 @@ impl ThreadPlan {
             cursor.go(start_mm + stretch.way_mm - left, leaves);
             if index == 0 {
                 // The averaged motion is half a window behind, and, of a parabola, a little above.
-                let here_s =
-                    cursor.time_s + self.window_s / 2.0 - change * self.window_s.powi(2) / 24.0 / leaves;
+                let here_s = cursor.time_s + self.window_s / 2.0
+                    - change * (self.window_s * self.window_s) / 24.0 / leaves;
                 let nut_s = 2.0 * (stretch.way_mm - left) / (from + leaves);
                 self.advance = per_second * (here_s - nut_s);
             }
