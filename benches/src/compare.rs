@@ -17,7 +17,7 @@ pub struct Cost {
 pub fn run(blocks: u64, rounds: usize, board: &mut Board) -> Result<(), String> {
     let folder = std::env::temp_dir().join("turnwright-bench");
     // The programs of an earlier run serve again when they have the same size.
-    let (note, size) = (folder.join("generated"), format!("4 {blocks}"));
+    let (note, size) = (folder.join("generated"), format!("5 {blocks}"));
     if std::fs::read_to_string(&note).is_ok_and(|noted| noted == size) {
         println!("the programs are those of an earlier run");
     } else {
@@ -58,8 +58,11 @@ pub fn run(blocks: u64, rounds: usize, board: &mut Board) -> Result<(), String> 
             }
         }
         let mine = median(&ours);
-        let count =
-            if name.starts_with("loop") { generate::LOOP_ROUNDS as f64 } else { (blocks * times) as f64 };
+        let count = match name {
+            "loop" | "loop-moves" => generate::LOOP_ROUNDS,
+            "jumps" => generate::JUMPS,
+            _ => blocks * times,
+        } as f64;
         print!(
             "{label:5} {name:11} {:8.3} s  {:6.1} M blocks/s  {:6.1} MiB",
             mine.cpu_s,
@@ -85,7 +88,7 @@ pub fn run(blocks: u64, rounds: usize, board: &mut Board) -> Result<(), String> 
         println!();
         match (name, step) {
             ("lines", "interpret") => once = mine.cpu_s,
-            ("jumps", _) => board.note("S3", mine.cpu_s * 1e6 / blocks as f64),
+            ("jumps", _) => board.note("S3", mine.cpu_s),
             ("lines5", _) => {
                 board.note("S1 memory", mine.memory_mib);
                 board.note("S2", mine.cpu_s / 5.0 / once);

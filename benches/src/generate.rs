@@ -58,7 +58,7 @@ pub fn all(folder: &Path, blocks: u64) -> Result<(), String> {
     arcs(folder, "arcs-centre", blocks, false)?;
     arcs(folder, "arcs-radius", blocks, true)?;
     loops(folder, LOOP_ROUNDS)?;
-    jumps(folder, blocks)
+    jumps(folder)
 }
 
 /// Rounds of the loops, as the goals have them, however short the other programs are.
@@ -91,14 +91,17 @@ fn loops(folder: &Path, rounds: u64) -> Result<(), String> {
 /// Lines of the program that jumps about.
 const JUMP_LINES: u64 = 100_000;
 
-/// As many jumps to computed places all over a long program; only ours, the other dialect has no such jump.
-fn jumps(folder: &Path, jumps: u64) -> Result<(), String> {
+/// Jumps to computed places all over it, as the goal has them.
+pub const JUMPS: u64 = 1_000_000;
+
+/// That program; only ours, the other dialect has no such jump.
+fn jumps(folder: &Path) -> Result<(), String> {
     let path = folder.join("jumps.nc");
     let fault = |error: std::io::Error| format!("{}: {error}", path.display());
     let mut file = BufWriter::new(File::create(&path).map_err(fault)?);
     let head = format!(
         "%\nO3000\n#1=0\n#2=7\nN1 #1=#1+1\nIF[#1 GT {}]GOTO99999\n#2=#2*7919+13\n#2=#2-FIX[#2/99000]*99000\nGOTO[#2+10]\n",
-        jumps / 2
+        JUMPS / 2
     );
     file.write_all(head.as_bytes()).map_err(fault)?;
     for line in 10..JUMP_LINES - 5 {

@@ -240,7 +240,7 @@ pub(crate) struct Core {
 pub struct Interpreter {
     pub(crate) core: Core,
     block: Block,
-    text_lines: TextLines,
+    pub(crate) text_lines: TextLines,
     kept_lines: KeptLines,
     pub(crate) alarm: Option<Alarm>,
 }
@@ -470,6 +470,9 @@ impl Interpreter {
     pub fn step(&mut self, environment: &mut dyn Environment) -> Step {
         // The moves of a cycle come one behind the other with nothing in between, and so do those of short lines. Each
         // kind has a function of its own: what the others keep at hand would be in its way.
+        if self.text_lines.goes_on() {
+            return self.step_by_lines(environment);
+        }
         if self.core.out.is_empty() && self.core.sync.is_none() {
             if self.core.active.is_some() {
                 if let Some(command) = self.next_cycle_move() {

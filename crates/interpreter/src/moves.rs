@@ -12,7 +12,7 @@ use turnwright_units::{Feed, FeedPerMinute, FeedPerRevolution, Length, Position,
 
 use crate::flow::FrameKind;
 use crate::limits;
-use crate::machine::Core;
+use crate::machine::{BlockPlace, Core};
 use crate::modal::FeedMode;
 use crate::plane::place;
 use crate::report::Alarm;
@@ -164,19 +164,19 @@ impl Core {
                 runs_on: false,
             };
         }
-        self.origin_outside_cycles()
+        self.origin_outside_cycles(self.at)
     }
 
-    /// The same where no cycle runs.
+    /// The same where no cycle runs, for the place of the block in work.
     ///
     /// Always inline: what is made of it in one place is not carried there.
     #[inline(always)]
-    pub(crate) fn origin_outside_cycles(&self) -> Origin {
+    pub(crate) fn origin_outside_cycles(&self, at: BlockPlace) -> Origin {
         Origin {
-            source: self.at.source.0,
-            line: self.at.line,
+            source: at.source.0,
+            line: at.line,
             figure_line: None,
-            sequence: self.at.sequence,
+            sequence: at.sequence,
             program: self.program,
             depth: self.depth(),
             cycle: None,

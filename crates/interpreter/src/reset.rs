@@ -162,6 +162,7 @@ impl Interpreter {
     /// The reset key: what is in work is dropped, modes are left as the control leaves them, and the program
     /// is at its start again.
     pub fn reset(&mut self) {
+        self.text_lines.stop(&mut self.core);
         self.core.out.clear();
         self.core.sync = None;
         self.core.abandon_compensation();
@@ -182,6 +183,7 @@ impl Interpreter {
     /// Cycle start after the end of the program: it runs from its start, or goes on behind its end where the
     /// control stays there.
     pub fn start_again(&mut self) {
+        self.text_lines.stop(&mut self.core);
         self.alarm = None;
         self.core.is_over = false;
         self.core.tell_axes();

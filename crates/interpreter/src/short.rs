@@ -15,7 +15,7 @@ use turnwright_units::{Feed, Length, Position, WorkTip};
 
 use crate::functions::arc::short_centre;
 use crate::functions::{FunctionId, PathKind};
-use crate::machine::Core;
+use crate::machine::{BlockPlace, Core};
 use crate::plain;
 use crate::words::{Role, is_strange_feed};
 
@@ -27,15 +27,15 @@ const ALONG: u32 = Block::bit(b'Z') | Block::bit(b'W');
 
 /// Where short lines come from.
 pub(crate) trait ShortLines {
-    /// The line that comes next, when it may go the short way. Nothing has happened then that the long way would not
-    /// find as it was.
+    /// The line that comes next, when it and what is in force let it go the short way. Nothing has happened then that
+    /// the long way would not find as it was.
     fn next_line(&mut self, core: &mut Core) -> Option<&ShortLine>;
 
-    /// Makes that line the block in work.
-    fn take_line(&self, core: &mut Core, sequence: Option<u32>);
+    /// Makes that line the block in work, and tells its place.
+    fn take_line(&mut self, core: &mut Core, sequence: Option<u32>) -> BlockPlace;
 
     /// That line is left to the long way.
-    fn leave_line(&self, _core: &mut Core) {}
+    fn leave_line(&mut self, core: &mut Core);
 }
 
 /// What a short line asks for.
@@ -71,9 +71,6 @@ impl Core {
     #[inline(always)]
     pub(crate) fn next_short_move(&mut self, lines: &mut impl ShortLines) -> Option<Command> {
         loop {
-            if !self.goes_short() {
-                return None;
-            }
             let line = lines.next_line(self)?;
             let Some((to, changes)) = self.short_target(line) else { break };
             let (id, _) = changes.code.unwrap_or((self.modal.motion, 0));
@@ -81,26 +78,29 @@ impl Core {
             // Each makes its move where it is given out: one that is carried there is waited for.
             match id.get().path {
                 Some(PathKind::Rapid) if !short.has_bend() => {
-                    if self.take_short_line(lines, to, &changes) {
+                    let at = self.take_short_line(lines, &changes);
+                    if self.goes_to(to) {
                         let path = self.rapid_path();
                         let action = Action::Rapid { to, path, others: None };
-                        return Some(Command::new(action, self.origin_outside_cycles()));
+                        return Some(Command::new(action, self.origin_outside_cycles(at)));
                     }
                 }
                 Some(PathKind::Line) if !short.has_bend() => {
                     let Some(feed) = self.short_cut_feed(&changes) else { break };
-                    if self.take_short_line(lines, to, &changes) {
+                    let at = self.take_short_line(lines, &changes);
+                    if self.goes_to(to) {
                         let action = Action::Feed { to, shape: Shape::Line, feed, others: None };
-                        return Some(Command::new(action, self.origin_outside_cycles()));
+                        return Some(Command::new(action, self.origin_outside_cycles(at)));
                     }
                 }
                 Some(PathKind::Arc(turn)) => {
                     let Some(feed) = self.short_cut_feed(&changes) else { break };
                     let Some(centre) = short_centre(self, &short, turn) else { break };
-                    self.take_short_line(lines, to, &changes);
+                    let at = self.take_short_line(lines, &changes);
+                    self.goes_to(to);
                     let shape = Shape::Arc { turn, centre };
                     let action = Action::Feed { to, shape, feed, others: None };
-                    return Some(Command::new(action, self.origin_outside_cycles()));
+                    return Some(Command::new(action, self.origin_outside_cycles(at)));
                 }
                 _ => break,
             }
@@ -118,14 +118,19 @@ impl Core {
 
     /// Whether nothing asks to see lines or moves on their way.
     #[inline(always)]
-    fn goes_short(&self) -> bool {
+    fn may_go_short(&self) -> bool {
         self.is_plain
             && !self.is_over
             && !self.looks_at_moves
             && self.waiting.is_none()
             && self.macros.interrupt.is_none()
             && self.macros.state.single_block == 0
-            && self.blocks_run < self.options.blocks_max
+    }
+
+    /// Whether one block more may be executed.
+    #[inline(always)]
+    fn may_run_block(&self) -> bool {
+        self.blocks_run < self.options.blocks_max
     }
 
     /// The end point of a short line, and what else it says, where all of it is in order.
@@ -138,17 +143,17 @@ impl Core {
         let mut to = self.modal.position;
         if present & CROSS != 0 {
             let (number, is_increment) = self.short_axis_word(line, b'X', b'U')?;
-            let length = self.plain_length(number)?;
+            let length = self.plain_place(number)?;
             to.x = if is_increment {
-                to.x + self.radius_of(length, Role::XIncrement)
+                to.x + self.radius_of(self.limited(length)?, Role::XIncrement)
             } else {
                 self.radius_of(length, Role::XCoordinate)
             };
         }
         if present & ALONG != 0 {
             let (number, is_increment) = self.short_axis_word(line, b'Z', b'W')?;
-            let length = self.plain_length(number)?;
-            to.z = if is_increment { to.z + length } else { length };
+            let length = self.plain_place(number)?;
+            to.z = if is_increment { to.z + self.limited(length)? } else { length };
         }
         if !self.is_in_range(to) {
             return None;
@@ -191,15 +196,14 @@ impl Core {
         (!is_above && !is_strange_feed(feed, per_revolution)).then_some(feed)
     }
 
-    /// Makes a short line the block in work, and its end the tool's place; whether that is another one.
+    /// Makes a short line the block in work, and tells its place.
     #[inline(always)]
     fn take_short_line(
         &mut self,
-        lines: &impl ShortLines,
-        to: Position<WorkTip>,
+        lines: &mut impl ShortLines,
         &Changes { code, sequence, feed }: &Changes,
-    ) -> bool {
-        lines.take_line(self, sequence);
+    ) -> BlockPlace {
+        let at = lines.take_line(self, sequence);
         self.blocks_run += 1;
         if sequence.is_some() {
             self.modal.in_force.sequence = sequence;
@@ -210,6 +214,12 @@ impl Core {
         if feed.is_some() {
             (self.modal.feed, self.modal.feed_is_lead) = (feed, false);
         }
+        at
+    }
+
+    /// The tool goes to the end of a short line; whether that is another place.
+    #[inline(always)]
+    fn goes_to(&mut self, to: Position<WorkTip>) -> bool {
         self.modal.position = to;
         let goes = to != self.tip;
         self.tip = to;

@@ -183,12 +183,21 @@ impl Text {
         self.buffer.get(self.at..self.filled).unwrap_or(&[])
     }
 
-    /// Takes the line at the start of [`Text::ahead`].
+    /// Takes the line at the start of [`Text::ahead`]; its number.
     #[inline]
-    pub(crate) fn take_ahead(&mut self, end: LineEnd) -> Line {
-        let line = self.line(self.at + end.start);
+    pub(crate) fn take_ahead(&mut self, end: LineEnd) -> u32 {
+        let number = self.next_line;
+        self.next_line = number.saturating_add(1);
         self.at += end.next;
-        line
+        number
+    }
+
+    /// A line that was taken, while it is in the window.
+    pub(crate) fn taken(&self, number: u32, offset: u64) -> Line {
+        let start = (offset - self.base) as usize;
+        let end = find_line_end(self.buffer.get(start..self.filled).unwrap_or(&[]), true);
+        let end = end.map_or(self.filled, |end| start + end.start);
+        Line { start, end, number, offset, is_cut: false, is_in_head: false }
     }
 
     /// Where the next line begins, counted from the start of the text.

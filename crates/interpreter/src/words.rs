@@ -95,6 +95,19 @@ impl Core {
     /// waits for the fields.
     #[inline(always)]
     pub(crate) fn plain_length(&self, number: &Decimal) -> Option<Length> {
+        self.limited(self.plain_place(number)?)
+    }
+
+    /// A length that the control can hold.
+    #[inline(always)]
+    pub(crate) fn limited(&self, length: Length) -> Option<Length> {
+        length.is_below(self.settings.length_limit_nm).then_some(length)
+    }
+
+    /// As [`Core::plain_length`], where the control may not be able to hold it: whoever makes a place of it asks for
+    /// the place.
+    #[inline(always)]
+    pub(crate) fn plain_place(&self, number: &Decimal) -> Option<Length> {
         if !(number.has_point || self.settings.is_calculator) || self.modal.is_inch {
             return None;
         }
@@ -104,8 +117,7 @@ impl Core {
         } else {
             self.fine_millimetres(number)?
         };
-        let length = Length::from_nm(nm);
-        length.is_below(self.settings.length_limit_nm).then_some(length)
+        Some(Length::from_nm(nm))
     }
 
     /// A length word whose value counts, or is long, large or missing.

@@ -183,3 +183,17 @@ fn a_loop_of_short_lines_that_goes_nowhere_ends() {
         assert_eq!(run.alarm.map(|alarm| alarm.key), Some("loop-without-motion"), "{control}");
     }
 }
+
+#[test]
+fn a_text_that_ends_behind_short_lines_is_told_of_at_the_last() {
+    for (last, end) in [("N7 Z3. X40.5", "\n"), (" X40.5 ", "\r\n"), ("X40.5;", "\n")] {
+        let program = format!("O1\nG98 F100. M3 S500\nG0 X50. Z2.\nG1 X48.\nX44.25 Z1.\n{last}{end}");
+        let run = run(program.as_bytes(), &Conditions::on("fanuc-0i-tf"));
+        let alarm = run.alarm.expect("there is no M30");
+        assert_eq!(alarm.key, "end-of-record-without-end", "{last}");
+        let place = alarm.place.expect("it has a place");
+        let word = last.trim().trim_end_matches(';');
+        assert_eq!(place.line, 6, "{last}");
+        assert_eq!(place.column as usize, 1 + last.find(word).expect("is in it"), "{last}");
+    }
+}

@@ -122,35 +122,21 @@ impl Run {
         // long as nothing but digits and a point stands before it.
         let values = bytes ^ (0x30 * ONES);
         let others = (values.wrapping_add(0x76 * ONES) | values) & (0x80 * ONES);
-        let whole_bits = others.trailing_zeros() & !7;
-        if whole_bits == 64 {
+        if others == 0 {
             return None;
         }
-        let has_point = (values >> whole_bits) as u8 == b'.' ^ 0x30;
-        let (digits, digits_bits) = if has_point {
-            // The digits move together over the point.
-            let whole = (1 << whole_bits) - 1;
-            let end_bits = (others & (others - 1)).trailing_zeros() & !7;
-            ((values & whole) | ((values >> 8) & !whole), end_bits - 8)
-        } else {
-            (values, whole_bits)
-        };
-        if digits_bits == 0 {
-            return None;
+        let whole = others.trailing_zeros() / 8;
+        if (values >> (whole * 8)) as u8 != b'.' ^ 0x30 {
+            let (digits, typed_digits) = (joined(values, whole)?, whole as u8);
+            return Some(Self { digits, scale: 0, typed_digits, has_point: false, bytes: whole as usize });
         }
-        // Up to the end of the eight, and then two, four and eight of them at once.
-        let ones = digits << (64 - digits_bits);
-        let pairs = (ones.wrapping_mul(1 + (10 << 8)) >> 8) & 0x00ff_00ff_00ff_00ff;
-        let fours = (pairs.wrapping_mul(1 + (100 << 16)) >> 16) & 0x0000_ffff_0000_ffff;
-        let eight = fours.wrapping_mul(1 + (10_000 << 32)) >> 32;
-        let typed_digits = (digits_bits / 8) as u8;
-        Some(Self {
-            digits: eight as i64,
-            scale: typed_digits - (whole_bits / 8) as u8,
-            typed_digits,
-            has_point,
-            bytes: usize::from(typed_digits) + usize::from(has_point),
-        })
+        let (through_point, behind_point) = (others ^ (others - 1), others & (others - 1));
+        let bytes = behind_point.trailing_zeros() / 8;
+        // The digits behind the point move over it.
+        let moved = values >> 8;
+        let digits = joined(moved ^ ((moved ^ values) & (through_point >> 8)), bytes - 1)?;
+        let (scale, typed_digits) = ((bytes - 1 - whole) as u8, (bytes - 1) as u8);
+        Some(Self { digits, scale, typed_digits, has_point: true, bytes: bytes as usize })
     }
 
     /// The run that `text` begins with, a byte at a time; `None` for no digit, and for more than [`DIGITS_MAX`].
@@ -176,6 +162,19 @@ impl Run {
             bytes,
         })
     }
+}
+
+/// The number that so many digits make, a byte each, the first one lowest; `None` for no digits.
+#[inline(always)]
+fn joined(digits: u64, count: u32) -> Option<i64> {
+    if count == 0 {
+        return None;
+    }
+    // Up to the end of the eight, and then two, four and eight of them at once.
+    let ones = digits << (64 - count * 8);
+    let pairs = (ones.wrapping_mul(1 + (10 << 8)) >> 8) & 0x00ff_00ff_00ff_00ff;
+    let fours = (pairs.wrapping_mul(1 + (100 << 16)) >> 16) & 0x0000_ffff_0000_ffff;
+    Some((fours.wrapping_mul(1 + (10_000 << 32)) >> 32) as i64)
 }
 
 #[cfg(test)]

@@ -24,11 +24,12 @@ pub struct ShortLine {
 impl ShortLine {
     /// Reads the line at the start of `text` when it is one block of blanks and of words with these `letters`
     /// ([`Block::bit`](crate::Block::bit)), each at most once, and its end and a little more is in sight. `None` for
-    /// any other: nothing is known then.
+    /// any other: nothing is known of its numbers then, and of its place what was known before.
     #[inline]
     pub fn read(&mut self, text: &[u8], letters: u32) -> Option<LineEnd> {
         let mut left = letters;
-        let (mut at, mut last_byte) = (0, 0);
+        let first_byte = text.iter().take_while(|byte| **byte == b' ').count();
+        let (mut at, mut last_byte) = (first_byte, first_byte);
         let end = loop {
             let sight: &Sight = text.get(at..)?.first_chunk()?;
             let letter = sight[0].wrapping_sub(b'A');
@@ -43,26 +44,24 @@ impl ShortLine {
             if left & bit == 0 {
                 return None;
             }
-            if left == letters {
-                (self.first, self.first_byte) = (sight[0], at as u32);
-            }
             left ^= bit;
-            let (number, bytes, next) = match number(sight) {
+            let (number, bytes) = match number(sight) {
                 Some(number) => number,
                 None => long_number(text.get(at..)?)?,
             };
             self.numbers[usize::from(letter) % PLACES] = number;
-            last_byte = at + bytes;
-            at = last_byte + usize::from(next == b' ');
+            at += bytes;
+            last_byte = at;
         };
-        self.present = letters ^ left;
-        self.last_byte = last_byte as u32;
         let semicolon = usize::from(end[0] == b';');
         let next = match end[semicolon] {
             b'\n' => semicolon + 1,
             b'\r' if end[semicolon + 1] == b'\n' => semicolon + 2,
             _ => return None,
         };
+        self.present = letters ^ left;
+        self.first = *text.get(first_byte)?;
+        (self.first_byte, self.last_byte) = (first_byte as u32, last_byte as u32);
         Some(LineEnd { start: at + semicolon, next: at + next })
     }
 
@@ -116,34 +115,39 @@ impl ShortLine {
 /// What is looked at of a text at once: a word with a usual number, and what follows it.
 type Sight = [u8; 16];
 
-/// The number of a word with at most one sign, a minus, and at most one point: itself, the bytes of the word, and the
-/// byte behind them. `None` when it is none, or a long one.
+/// The number of a word with at most one sign, a minus, and at most one point: itself, and the bytes of the word. `None`
+/// when it is none, or a long one.
 #[inline(always)]
-fn number(word: &Sight) -> Option<(Decimal, usize, u8)> {
-    let &[letter, first, second, _, _, _, _, _, _, ninth, ..] = word;
+fn number(word: &Sight) -> Option<(Decimal, usize)> {
+    let &[letter, first, second, ..] = word;
     if letter == b'G' && first.is_ascii_digit() && !second.is_ascii_digit() && second != b'.' {
         // The codes of most lines.
         let run =
             Run { digits: i64::from(first - b'0'), scale: 0, typed_digits: 1, has_point: false, bytes: 1 };
-        return Some((run.signed(false), 2, second));
+        return Some((run.signed(false), 2));
     }
-    let eight = u64::from_le_bytes(*word[1..].first_chunk()?);
-    let is_negative = first == b'-';
-    let run = Run::of_eight(if is_negative { eight >> 8 | u64::from(ninth) << 56 } else { eight })?;
-    let bytes = 1 + usize::from(is_negative) + run.bytes;
+    // Two ways: which of them is gone is foretold, and no number waits for the sign of the one before.
+    if first == b'-' { signed_number::<true>(word) } else { signed_number::<false>(word) }
+}
+
+/// The same, where the sign is known.
+#[inline(always)]
+fn signed_number<const IS_NEGATIVE: bool>(word: &Sight) -> Option<(Decimal, usize)> {
+    let first = 1 + usize::from(IS_NEGATIVE);
+    let run = Run::of_eight(u64::from_le_bytes(*word[first..].first_chunk()?))?;
+    let bytes = first + run.bytes;
     // A letter O behind digits may stand for a zero, and is no letter of a short line.
-    let next = word[bytes % word.len()];
-    (!next.is_ascii_digit()).then(|| (run.signed(is_negative), bytes, next))
+    let is_whole = !word[bytes % word.len()].is_ascii_digit();
+    is_whole.then(|| (run.signed(IS_NEGATIVE), bytes))
 }
 
 /// The same of a word of any length, at the start of `text`.
 #[cold]
-fn long_number(text: &[u8]) -> Option<(Decimal, usize, u8)> {
+fn long_number(text: &[u8]) -> Option<(Decimal, usize)> {
     let is_negative = *text.get(1)? == b'-';
     let first = 1 + usize::from(is_negative);
     let run = Run::read_slowly(text.get(first..)?)?;
-    let bytes = first + run.bytes;
-    Some((run.signed(is_negative), bytes, *text.get(bytes)?))
+    Some((run.signed(is_negative), first + run.bytes))
 }
 
 #[cfg(test)]

@@ -22,6 +22,9 @@ const IDLE_BLOCKS: u64 = 1 + limits::IDLE_WORD_BLOCKS;
 impl ShortLines for KeptLines {
     #[inline(always)]
     fn next_line(&mut self, core: &mut Core) -> Option<&ShortLine> {
+        if !(core.may_go_short() && core.may_run_block()) {
+            return None;
+        }
         let id = core.run_quick(core.cache.current?);
         let (kept, skip) = core.cache.kept(id);
         let &Kept::Words { first, count, computed, is_short: true, .. } = kept else { return None };
@@ -29,7 +32,7 @@ impl ShortLines for KeptLines {
             && core.in_cycle.is_none()
             && core.capture.is_none()
             && core.cache.leads_on(id)
-            && core.blocks_run < core.options.blocks_max
+            && core.may_run_block()
             && core.idle_blocks + IDLE_BLOCKS <= core.options.idle_blocks_max;
         if !is_free {
             return None;
@@ -51,16 +54,17 @@ impl ShortLines for KeptLines {
     }
 
     #[inline(always)]
-    fn take_line(&self, core: &mut Core, sequence: Option<u32>) {
-        if let Some(id) = self.of {
-            core.at = BlockPlace { sequence, ..core.cache.place(id) };
-            core.cache.follow(Way::Next);
-        }
+    fn take_line(&mut self, core: &mut Core, sequence: Option<u32>) -> BlockPlace {
         core.idle_blocks += IDLE_BLOCKS;
+        let Some(id) = self.of else { return core.at };
+        let at = BlockPlace { sequence, ..core.cache.place(id) };
+        core.at = at;
+        core.cache.follow(Way::Next);
+        at
     }
 
     #[cold]
-    fn leave_line(&self, core: &mut Core) {
+    fn leave_line(&mut self, core: &mut Core) {
         if let Some(id) = self.of {
             core.cache.leave_short_way(id);
         }
