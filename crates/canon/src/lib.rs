@@ -268,13 +268,15 @@ pub struct SpindleWatch {
     pub band: Rpm,
 }
 
-/// Which switches of the operator's panel a program has put out of action.
+/// Which switches of the operator's panel a program has put out of action, or the control in a move that skips.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PanelLock {
     /// Feed hold.
     pub hold: bool,
     /// Feed override: it counts as 100 %.
     pub feed_override: bool,
+    /// Dry run: cuts go at their own feed.
+    pub dry_run: bool,
 }
 
 /// Coolant on or off.

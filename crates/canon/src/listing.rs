@@ -89,12 +89,19 @@ pub fn write_listing(out: &mut Vec<u8>, command: &Command, decimals: u8) {
             let text = format!("spindle-watch {delay}ms reached{reached}% allowed{allowed}% band{band}rpm");
             out.extend_from_slice(text.as_bytes());
         }
-        Action::PanelLock(lock) => out.extend_from_slice(match (lock.hold, lock.feed_override) {
-            (false, false) => b"panel-lock off".as_slice(),
-            (true, false) => b"panel-lock hold",
-            (false, true) => b"panel-lock override",
-            (true, true) => b"panel-lock hold override",
-        }),
+        Action::PanelLock(lock) => {
+            out.extend_from_slice(b"panel-lock");
+            let switches = [
+                (*lock == crate::PanelLock::default(), b" off".as_slice()),
+                (lock.hold, b" hold"),
+                (lock.feed_override, b" override"),
+                (lock.dry_run, b" dry-run"),
+            ];
+            switches
+                .into_iter()
+                .filter(|(is_locked, _)| *is_locked)
+                .for_each(|(_, word)| out.extend_from_slice(word));
+        }
         Action::SpindleWatch(None) => out.extend_from_slice(b"spindle-watch off"),
         Action::RigidTapping(false) => out.extend_from_slice(b"rigid-tapping off"),
         Action::PathMode(mode) => out.extend_from_slice(match mode {

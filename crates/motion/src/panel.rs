@@ -78,6 +78,7 @@ impl Panel {
         Self {
             is_held: self.is_held && !lock.hold,
             feed: if lock.feed_override { 1.0 } else { self.feed },
+            dry_run_mm_per_min: self.dry_run_mm_per_min.filter(|_| !lock.dry_run),
             ..self
         }
     }

@@ -336,7 +336,8 @@ fn nothing_begins_while_the_operator_holds() {
 
 #[test]
 fn a_program_can_put_hold_and_override_out_of_action() {
-    let lock = |hold, feed_override| action(Action::PanelLock(PanelLock { hold, feed_override }));
+    let dry_run = false;
+    let lock = |hold, feed_override| action(Action::PanelLock(PanelLock { hold, feed_override, dry_run }));
     let commands = [
         lock(true, true),
         cut(30.0, -5.0, per_minute(600.0)),
@@ -356,4 +357,36 @@ fn a_program_can_put_hold_and_override_out_of_action() {
     let (samples, is_stuck) = played(&commands, rates, &[(0.5, held), (3.0, half)]);
     let last = samples[samples.len() - 1].time_s;
     assert!(!is_stuck && (last - 3.0 - seconds[3]).abs() < 0.01, "{last} {seconds:?}");
+}
+
+#[test]
+fn a_skip_move_goes_at_its_own_feed_in_dry_run_and_whatever_the_override_and_can_be_held() {
+    let lock =
+        |feed_override, dry_run| action(Action::PanelLock(PanelLock { hold: false, feed_override, dry_run }));
+    let commands = [
+        lock(true, true),
+        cut(30.0, -5.0, per_minute(600.0)),
+        lock(false, false),
+        cut(30.0, -15.0, per_minute(600.0)),
+    ];
+    let usual = timed(&commands, rates(Panel::default(), PanelRules::default()));
+    let dry = Some(3000.0);
+    let panels = [
+        Panel { feed: 0.5, ..Panel::default() },
+        Panel { feed: 0.0, dry_run_mm_per_min: dry, ..Panel::default() },
+    ];
+    for panel in panels {
+        let rates = rates(panel, PanelRules::default());
+        let seconds = timed(&commands, rates);
+        assert_eq!(seconds[1], usual[1], "{panel:?}");
+        assert!((seconds[3] - usual[3]).abs() > 0.5, "{panel:?} {seconds:?}");
+        let (samples, _) = played(&commands, rates, &[]);
+        let last = samples[samples.len() - 1].time_s;
+        assert!((last - seconds.iter().sum::<f64>()).abs() < 4e-3, "{last} {seconds:?}");
+    }
+    let held = Panel { is_held: true, ..Panel::default() };
+    let (samples, is_stuck) =
+        played(&commands, rates(Panel::default(), PanelRules::default()), &[(0.5, held)]);
+    let last = samples[samples.len() - 1];
+    assert!(is_stuck && last.place[1] > -1.0 && last.place[1] < 0.5, "{last:?}");
 }

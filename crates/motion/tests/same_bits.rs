@@ -377,7 +377,11 @@ fn play_kind(index: usize) -> (u64, u64) {
         for _ in 0..8 + writer.dice.below(25) {
             add(&mut writer);
             if name == "operated" && writer.dice.one_in(12) {
-                let lock = PanelLock { hold: writer.dice.one_in(2), feed_override: writer.dice.one_in(2) };
+                let lock = PanelLock {
+                    hold: writer.dice.one_in(2),
+                    feed_override: writer.dice.one_in(2),
+                    dry_run: writer.dice.one_in(2),
+                };
                 writer.actions.push(Action::PanelLock(lock));
             }
         }

@@ -230,8 +230,10 @@ fn write_action(out: &mut Vec<u8>, action: &Action, decimals: u8) {
             write_number(out, br#","band_rpm":"#, watch.band.0);
         }
         Action::PanelLock(lock) => {
-            let text =
-                format!(r#"{{"op":"panel-lock","hold":{},"override":{}"#, lock.hold, lock.feed_override);
+            let turnwright_canon::PanelLock { hold, feed_override, dry_run } = lock;
+            let text = format!(
+                r#"{{"op":"panel-lock","hold":{hold},"override":{feed_override},"dry_run":{dry_run}"#
+            );
             out.extend_from_slice(text.as_bytes());
         }
         Action::SpindleWatch(None) => out.extend_from_slice(br#"{"op":"spindle-watch","on":false"#),
@@ -552,9 +554,12 @@ mod tests {
         let expected =
             r#"{"op":"spindle-watch","on":true,"delay_ms":500,"reached_percent":5,"allowed_percent":12.5,"#;
         assert!(line.starts_with(expected) && line.contains(r#""band_rpm":50,"#), "{line}");
-        let lock = turnwright_canon::PanelLock { hold: true, feed_override: false };
+        let lock = turnwright_canon::PanelLock { hold: true, feed_override: false, dry_run: false };
         let line = line_of(Action::PanelLock(lock), Origin::line(3));
-        assert!(line.starts_with(r#"{"op":"panel-lock","hold":true,"override":false,"#), "{line}");
+        assert!(
+            line.starts_with(r#"{"op":"panel-lock","hold":true,"override":false,"dry_run":false,"#),
+            "{line}"
+        );
         let line = line_of(Action::RigidTapping(true), Origin::line(3));
         assert!(line.starts_with(r#"{"op":"rigid-tapping","on":true,"#), "{line}");
     }

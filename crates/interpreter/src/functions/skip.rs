@@ -4,12 +4,12 @@
 //! program goes on from where the tool stopped. Without a signal the move runs to its end. `P` names the input
 //! where the control has several. The place is kept as the skip position. Nose compensation must be off.
 //!
-//! Whether and where a signal comes is the environment's affair: in a setup file `[[skip]]` says it. Override and
-//! dry run (6200#7) act on the machine only.
+//! Whether and where a signal comes is the environment's affair: in a setup file `[[skip]]` says it. Feed
+//! override and dry run act in it by parameter only (6200#7): without it they are put out of action for the move.
 //!
 //! Source: skip function and multi-step skip, both families.
 
-use turnwright_canon::{Action, OtherAxes, Shape};
+use turnwright_canon::{Action, OtherAxes, PanelLock, Shape};
 use turnwright_units::{Angle, Length, Position, Radius, WorkTip};
 
 use super::Function;
@@ -50,7 +50,15 @@ fn skip(core: &mut Core, call: &mut Call<'_>) -> Result<(), Alarm> {
     core.skip_place = stop;
     core.skip_places = core.axes.at;
     core.tell_skip();
-    core.emit_move(stop, Action::Feed { to: stop, shape: Shape::Line, feed, others })
+    let action = Action::Feed { to: stop, shape: Shape::Line, feed, others };
+    if core.settings.skip_feed_overridden {
+        return core.emit_move(stop, action);
+    }
+    let lock = core.panel_lock();
+    core.emit(Action::PanelLock(PanelLock { feed_override: true, dry_run: true, ..lock }));
+    core.emit_move(stop, action)?;
+    core.emit(Action::PanelLock(lock));
+    Ok(())
 }
 
 impl Core {

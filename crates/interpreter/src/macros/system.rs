@@ -309,6 +309,12 @@ impl Core {
         }
     }
 
+    /// Which switches of the panel the program has put out of action.
+    pub(crate) fn panel_lock(&self) -> PanelLock {
+        let flags = self.macros.state.hold;
+        PanelLock { hold: flags & HOLD_OFF != 0, feed_override: flags & OVERRIDE_OFF != 0, dry_run: false }
+    }
+
     fn write_system(
         &mut self,
         variable: u32,
@@ -364,8 +370,7 @@ impl Core {
                 let Some(flags) = flags(7) else { return Ok(Written::OutOfRange) };
                 let before = std::mem::replace(&mut state.hold, flags);
                 if (before ^ flags) & (HOLD_OFF | OVERRIDE_OFF) != 0 {
-                    let (hold, feed_override) = (flags & HOLD_OFF != 0, flags & OVERRIDE_OFF != 0);
-                    self.emit(Action::PanelLock(PanelLock { hold, feed_override }));
+                    self.emit(Action::PanelLock(self.panel_lock()));
                 }
             }
             3005 => {
