@@ -72,7 +72,8 @@ impl<'a> Execution<'a> {
     pub(crate) fn new(text: &'a ProgramText, session: &Session, machine: &Machine) -> Result<Self, Finding> {
         let usual = Options::default();
         let options = Options {
-            blocks_max: machine.max_blocks.unwrap_or(usual.blocks_max),
+            // A long text may be read through once; no block is shorter than a letter, a digit and a line end.
+            blocks_max: machine.max_blocks.unwrap_or(usual.blocks_max + text.len() / 3),
             idle_blocks_max: machine.max_idle_blocks.unwrap_or(usual.idle_blocks_max),
         };
         let switches = Switches::new(session, machine)?;

@@ -7,6 +7,7 @@ use turnwright_control::policy::{AfterRoughing, DuplicateSequence, FinishingFigu
 use turnwright_cycles::Figure;
 use turnwright_diagnostics::{Diagnostic, Place};
 use turnwright_syntax::{Block, Word, scan_block};
+use turnwright_units::Feed;
 
 use crate::block::Call;
 use crate::flow::{FrameKind, Resume};
@@ -45,6 +46,8 @@ pub(crate) struct Captured {
     pub(crate) first_has_x: bool,
     pub(crate) first_has_z: bool,
     pub(crate) first_place: Place,
+    /// At which its cycle cuts.
+    pub(crate) feed: Feed,
     /// Its first block.
     begin: Resume,
     /// Where execution goes on.
@@ -207,6 +210,11 @@ impl Core {
         self.refuse_in_mdi("cycle-not-in-memory", call.word)?;
         let range = self.range_words(call)?;
         let (first, _) = self.find_range(&range, call)?;
+        // Feeds of the figure do not count in roughing.
+        let Some(feed) = self.feed_in_force() else {
+            return Err(self.alarm_at("feed-missing", call.word));
+        };
+        self.check_spindle();
         let is_adjacent = self.look_between(first, &range, call)?;
         let here = self.resume();
         let cycle_line = self.line_cursor();
@@ -247,6 +255,7 @@ impl Core {
             first_has_x: first_letters & CROSS != 0,
             first_has_z: first_letters & ALONG != 0,
             first_place,
+            feed,
             begin: first,
             behind,
         })

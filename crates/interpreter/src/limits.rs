@@ -1,7 +1,8 @@
 //! Limits that keep any program within bounded time and memory. Each has its own diagnostic.
 
-/// Blocks executed in one run (`block-limit-reached`).
-pub const BLOCKS_MAX: u64 = 30_000_000;
+/// Blocks executed in one run (`block-limit-reached`): more than a machine runs in a week, few enough for a loop
+/// without an end to be told within seconds. Who reads long texts adds what they hold.
+pub const BLOCKS_MAX: u64 = 6_000_000;
 
 /// Blocks of loops executed without a move (`loop-without-motion`). A block that has to be read anew counts
 /// for [`IDLE_READ_BLOCKS`].
@@ -32,7 +33,7 @@ pub const HELD_TEXT_BYTES_MAX: u64 = 4 * 1024 * 1024;
 pub const CYCLE_MOVES_MAX: u64 = 5_000_000;
 
 /// Moves made by all cycles of one run (`cycle-move-limit`).
-pub const RUN_MOVES_MAX: u64 = 200_000_000;
+pub const RUN_MOVES_MAX: u64 = 20_000_000;
 
 /// Warnings kept; further ones are counted (`too-many-diagnostics`).
 pub const WARNINGS_MAX: usize = 200;

@@ -16,6 +16,14 @@ use crate::removed::Removed;
 /// A chunk with more slabs is parted. Below a few dozen, moving slabs about costs no more than looking at them.
 const CHUNK_SLABS_MAX: usize = 48;
 
+/// A slab narrower than this, mm, with more bands is a comb: what a round nose leaves of an upright face that thousands
+/// of passes end at. Nobody sees its teeth, and every later cut would look at each of them.
+const COMB_MM: f64 = 1e-5;
+const COMB_BANDS_MAX: usize = 24;
+
+/// Gaps of a comb up to this are filled.
+const COMB_GAP_MM: f64 = 0.1;
+
 /// Between two Z: a stack of bands.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slab {
@@ -107,10 +115,32 @@ impl Run {
     /// Closes a slab with the bands pushed since the last; without any there is no slab.
     #[inline]
     pub(crate) fn end_slab(&mut self, from: f64, to: f64) {
+        if to - from < COMB_MM {
+            self.fill_comb(from, to);
+        }
         let bands = &self.bands[self.first_band(self.len())..];
         let (Some(lowest), Some(highest)) = (bands.first(), bands.last()) else { return };
         let (low, high) = (lowest.floor.lowest(from, to), highest.roof.highest(from, to));
         self.push_slab(Slab { from, to, low, high, end: 0 });
+    }
+
+    /// Makes the teeth of a comb one band. The slab is far too narrow for that to matter to any size.
+    fn fill_comb(&mut self, from: f64, to: f64) {
+        let first = self.first_band(self.len());
+        if self.bands.len() - first <= COMB_BANDS_MAX {
+            return;
+        }
+        let mut kept = first;
+        for index in first + 1..self.bands.len() {
+            let band = self.bands[index];
+            if band.floor.lowest(from, to) - self.bands[kept].roof.highest(from, to) <= COMB_GAP_MM {
+                self.bands[kept].roof = band.roof;
+            } else {
+                kept += 1;
+                self.bands[kept] = band;
+            }
+        }
+        self.bands.truncate(kept + 1);
     }
 
     /// Adds a slab of one band.

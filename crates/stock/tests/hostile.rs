@@ -95,3 +95,25 @@ fn blanks_that_cannot_be_are_refused() {
     // Given from right to left it is a bar as well.
     assert!(Section::bar(5.0, 0.0, -9.0).is_ok());
 }
+
+/// Passes of two micrometres that end at the same shoulder leave a tooth each, a nanometre high: no later cut looks at
+/// thousands of them, and the part is what it would be without.
+#[test]
+fn thousands_of_passes_to_one_shoulder_leave_no_comb() {
+    const PASSES: u32 = 3_000;
+    let mut section = Section::bar(20.0, -20.0, 0.0).expect("a bar");
+    let nose = Cutter::new(&Outline::circle(point(0.0, 0.0), 0.4).expect("a disc"));
+    let mut sweep = Sweep::new();
+    for pass in 1..=PASSES {
+        let height = 20.4 - 0.002 * f64::from(pass);
+        section.cut(
+            sweep.along(&nose, &Segment { start: point(height, 2.0), end: point(height, -10.0), bend: None }),
+        );
+    }
+    let edges: usize = section.contours().iter().map(|contour| contour.segments.len()).sum();
+    assert!(edges < 100, "{edges}");
+    // The bar, less the ring down to the last pass; the nose leaves its round in the corner.
+    let (depth, left) = (0.002 * f64::from(PASSES), 0.4_f64.powi(2) * (1.0 - std::f64::consts::FRAC_PI_4));
+    let area = 20.0 * 20.0 - depth * 10.4 + left;
+    assert!((section.area_mm2() - area).abs() < 1e-4, "{} {area}", section.area_mm2());
+}

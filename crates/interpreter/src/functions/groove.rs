@@ -104,9 +104,6 @@ impl Core {
         let (start, end) = (self.modal.position, self.target(call.block)?);
         let along_z = peck_axis == cycles::PeckAxis::Z;
         let words = self.groove_words(call, along_z, form)?;
-        let Some(feed) = self.feed_in_force() else {
-            return Err(self.alarm_at("feed-missing", call.word));
-        };
         let (peck, step, peck_letters) = if along_z {
             (words.lengthwise, words.cross, letters(b"ZW"))
         } else {
@@ -122,6 +119,9 @@ impl Core {
             }
             self.warn_block("groove-step-omitted");
         }
+        let Some(feed) = self.feed_in_force() else {
+            return Err(self.alarm_at("feed-missing", call.word));
+        };
         self.check_spindle();
         let shifts = if along_z { end.x != start.x } else { end.z != start.z };
         if !words.relief.is_zero()

@@ -87,19 +87,15 @@ impl Core {
         for word in [call.block.word(b'U'), call.block.word(b'W')].into_iter().flatten() {
             self.missing_point(word);
         }
-        let Some(feed) = self.feed_in_force() else {
-            return Err(self.alarm_at("feed-missing", call.word));
-        };
         if passes == 0 {
             return Err(self.alarm_at("pass-count-illegal", call.word));
         }
-        self.check_spindle();
         let captured = self.capture_figure(call)?;
         self.remember_range(&captured);
         self.warn_allowance_signs(call, &captured.figure, None, (allowance_x, allowance_z));
         self.check_pattern(&captured, relief, call);
         let request = cycles::PatternRequest {
-            context: self.cycle_context(feed),
+            context: self.cycle_context(captured.feed),
             relief_x: relief.0,
             relief_z: relief.1,
             passes,

@@ -126,10 +126,6 @@ impl Core {
             self.missing_point(word);
         }
         let words = self.rough_words(call, form)?;
-        let Some(feed) = self.feed_in_force() else {
-            return Err(self.alarm_at("feed-missing", call.word));
-        };
-        self.check_spindle();
         let mut captured = self.capture_figure(call)?;
         self.remember_range(&captured);
         if form == Form::OneBlockRecognised {
@@ -140,7 +136,7 @@ impl Core {
         self.check_figure(&captured, kind, along, (allowance_x, allowance_z), call)?;
         let policies = &self.control.policies;
         let rough = cycles::RoughRequest {
-            context: self.cycle_context(feed),
+            context: self.cycle_context(captured.feed),
             along,
             depth: words.depth,
             escape: words.escape,
