@@ -41,7 +41,8 @@ pub struct PanelRules {
     pub rapids_heed_feed: bool,
     /// Dry run acts on rapids.
     pub dry_rapids: bool,
-    /// Dry run acts on threads and taps: they go at its speed, out of step with the spindle or leading it.
+    /// Dry run acts on threads and taps: they go at its speed, out of step with the spindle or leading it. A thread, with
+    /// all that is chained to it, ends as it began: switched in it, on or off, the dry run acts behind it.
     pub dry_threads: bool,
     /// Feed hold stops the time of a dwell.
     pub hold_stops_dwell: bool,

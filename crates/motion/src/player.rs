@@ -146,6 +146,10 @@ impl Player {
         if !matches!(&command.action, Action::Thread { is_chained: true, .. }) {
             self.play_thread(sink);
         }
+        if matches!(&command.action, Action::Thread { is_chained: false, .. }) {
+            // A thread begins at rest: how the panel is set then counts for all of it.
+            self.end_run(sink);
+        }
         // In a dry run that acts on them threads are cuts like any other.
         let is_dry_thread = kind == Kind::Threading
             && self.thread.is_empty()

@@ -137,8 +137,8 @@ impl Schedule {
                     && others.is_some() == planning.has_others
                     && !self.clock.would_wait()
             }
-            // A dry run passes threads as cuts.
-            Action::Thread { .. } => {
+            // A dry run passes threads as cuts, each from rest.
+            Action::Thread { is_chained: true, .. } => {
                 planning.run.is_open()
                     && !planning.is_block_over
                     && !planning.has_others

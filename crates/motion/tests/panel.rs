@@ -390,3 +390,54 @@ fn a_skip_move_goes_at_its_own_feed_in_dry_run_and_whatever_the_override_and_can
     let last = samples[samples.len() - 1];
     assert!(is_stuck && last.place[1] > -1.0 && last.place[1] < 0.5, "{last:?}");
 }
+
+#[test]
+fn a_dry_run_switched_in_a_thread_acts_behind_it_and_switched_before_it_at_once() {
+    // A cut of some 2 s, a chain of two threads, 2 s each in step and 0.6 s at 3 m/min, back, and one thread more.
+    let commands = [
+        turn(600),
+        rapid(20.0, 10.0, RapidPath::EachAxis),
+        cut(20.0, 5.0, per_minute(150.0)),
+        thread(20.0, -25.0, 1.5, false),
+        thread(20.5, -55.0, 1.5, true),
+        rapid(30.0, -55.0, RapidPath::EachAxis),
+        rapid(20.0, -20.0, RapidPath::Straight),
+        thread(20.0, -50.0, 1.5, false),
+        cut(20.0, -60.0, per_minute(300.0)),
+    ];
+    let usual = Panel::default();
+    let dry = Panel { dry_run_mm_per_min: Some(3000.0), ..usual };
+    let rules = PanelRules { dry_threads: true, ..PanelRules::default() };
+    // Seconds in threads, of the chain and of the last one, and of the last cut.
+    let seconds = |start: Panel, changes: &[(f64, Panel)]| {
+        let (samples, is_stuck) = played(&commands, rates(start, rules), changes);
+        assert!(!is_stuck);
+        let of = |kind: Kind, is_in: fn(f64) -> bool| {
+            let is_here = |sample: &&Sample| sample.kind == kind && is_in(sample.place[1]);
+            samples.iter().filter(is_here).count() as f64 / 1000.0
+        };
+        let back = samples.iter().rposition(|sample| sample.kind == Kind::Rapid).expect("goes back");
+        let last =
+            samples[back..].iter().filter(|sample| sample.kind == Kind::Threading).count() as f64 / 1000.0;
+        [of(Kind::Threading, |_| true) - last, last, of(Kind::Cutting, |z| z < -50.0)]
+    };
+    let is_near = |now: [f64; 3], expected: [f64; 3]| {
+        now.iter().zip(expected).all(|(now, expected)| (now - expected).abs() < 0.2)
+    };
+    let (in_step, all_dry) = (seconds(usual, &[]), seconds(dry, &[]));
+    assert!(
+        is_near(in_step, [4.1, 2.1, 2.0]) && is_near(all_dry, [1.2, 0.6, 0.2]),
+        "{in_step:?} {all_dry:?}"
+    );
+    // In the cut before the chain: that is the next to begin.
+    assert!(is_near(seconds(usual, &[(1.5, dry)]), all_dry), "{:?}", seconds(usual, &[(1.5, dry)]));
+    // Turned off before the chain: the spindle has its speed after 0.6 s, the dry cut begins at 0.75 s.
+    let early = seconds(dry, &[(0.75, usual)]);
+    assert!(is_near(early, in_step), "{early:?}");
+    // In the chain, in its first link: it ends as it began, what follows is dry.
+    let begun = seconds(usual, &[(4.0, dry)]);
+    assert!(is_near(begun, [in_step[0], all_dry[1], all_dry[2]]), "{begun:?}");
+    // And the other way round.
+    let begun = seconds(dry, &[(1.3, usual)]);
+    assert!(is_near(begun, [all_dry[0], in_step[1], in_step[2]]), "{begun:?}");
+}
