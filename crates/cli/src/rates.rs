@@ -2,8 +2,8 @@
 
 use turnwright_control::{Machine, Parameters};
 use turnwright_motion::{
-    AccDec, Arrival, AuxiliaryTimes, AxisDynamics, Dynamics, Fluctuation, Gear, GearSelection, Gears,
-    MachineRates, Orientation, PanelRules, RapidSurfaceSpeed, SpeedWait,
+    AccDec, AfterLaw, Arrival, AuxiliaryTimes, AxisDynamics, Dynamics, Fluctuation, Gear, GearSelection,
+    Gears, MachineRates, Orientation, PanelRules, RapidSurfaceSpeed, SpeedWait,
 };
 use turnwright_units::Rpm;
 
@@ -53,6 +53,11 @@ pub(crate) fn rates(machine: &Machine, parameters: &Parameters, stops_optionally
             RapidSurfaceSpeed::AtEndPoint
         },
         dynamics: Some(dynamics(machine)),
+        after: if machine.acc_dec == turnwright_control::AccDec::AfterExponential {
+            AfterLaw::Exponential
+        } else {
+            AfterLaw::Even
+        },
         panel_rules: PanelRules {
             rapid_lowest_per_min: parameters.value("rapid-rate-lowest"),
             rapids_heed_feed: parameters.bit("rapid-stops-with-feed-override"),
@@ -94,7 +99,7 @@ fn dynamics(machine: &Machine) -> Dynamics {
     let acc_dec = match machine.acc_dec {
         // What parameters leave open keeps the path.
         turnwright_control::AccDec::Before | turnwright_control::AccDec::ByParameter => AccDec::Before,
-        turnwright_control::AccDec::After => AccDec::After,
+        turnwright_control::AccDec::After | turnwright_control::AccDec::AfterExponential => AccDec::After,
     };
     let (corner_s, in_position_s) = (machine.corner_s, machine.in_position_s);
     let cutting_mm_per_s2 = machine.acceleration_cutting_mm_per_s2.unwrap_or(f64::INFINITY);

@@ -89,8 +89,10 @@ pub enum AccDec {
     ByParameter,
     /// Before interpolation: the path is kept.
     Before,
-    /// After interpolation: each axis comes behind, corners are cut short.
+    /// After interpolation: each axis comes behind, its speed changing evenly; corners are cut short.
     After,
+    /// After interpolation: each axis comes behind, its speed changing exponentially; corners and arcs are cut shorter.
+    AfterExponential,
 }
 
 /// Who waits until the spindle has its speed.
@@ -303,7 +305,16 @@ impl Machine {
         }
         if self.acc_dec == AccDec::ByParameter {
             let is_after = before_mm_per_s2.is_none() && time_constant_ms.is_some();
-            self.acc_dec = if is_after { AccDec::After } else { AccDec::Before };
+            // Where the control has the choice, the bit that is not set means exponential; one law holds for the path.
+            let is_even = parameters.number("cutting-even-after-interpolation").is_none()
+                || Axis::TURNING
+                    .into_iter()
+                    .any(|axis| parameters.axis_value("cutting-even-after-interpolation", axis) != 0.0);
+            self.acc_dec = match (is_after, is_even) {
+                (true, true) => AccDec::After,
+                (true, false) => AccDec::AfterExponential,
+                (false, _) => AccDec::Before,
+            };
         }
         if let Some(feed) = set("cutting-feed-maximum") {
             self.cutting_max_mm_per_min = feed;

@@ -679,14 +679,21 @@ mod tests {
         };
         let (tb, tf, ta) = ("fanuc-0i-tc", "fanuc-0i-tf", "gsk-988ta");
         assert_eq!(machine(tf, "", &[]), (AccDec::Before, None));
-        for control in [tb, tf, ta] {
-            assert_eq!(machine(control, "", &[("1622.X", "64")]), (AccDec::After, None));
+        for (control, law) in
+            [(tb, AccDec::AfterExponential), (tf, AccDec::AfterExponential), (ta, AccDec::After)]
+        {
+            assert_eq!(machine(control, "", &[("1622.X", "64")]), (law, None));
         }
+        for control in [tb, tf] {
+            assert_eq!(machine(control, "", &[("1622.X", "64"), ("1610#0.X", "1")]), (AccDec::After, None));
+        }
+        let exponential = "acc_dec = \"after-exponential\"";
+        assert_eq!(machine(ta, exponential, &[]), (AccDec::AfterExponential, None));
         let both = [("1622.X", "64"), ("1660.X", "800"), ("1660.Z", "600")];
         assert_eq!(machine(tf, "", &both), (AccDec::Before, Some(600.0)));
         // 6000 mm/min in 200 ms; one of the two alone is none.
         assert_eq!(machine(tb, "", &[("1770", "6000"), ("1771", "200")]), (AccDec::Before, Some(500.0)));
-        assert_eq!(machine(tb, "", &[("1770", "6000"), ("1622.Z", "32")]), (AccDec::After, None));
+        assert_eq!(machine(tb, "", &[("1770", "6000"), ("1622.Z", "32")]), (AccDec::AfterExponential, None));
         // The machine file overrules where, the parameter how much.
         assert_eq!(machine(tf, "acc_dec = \"after\"", &both), (AccDec::After, Some(600.0)));
         assert_eq!(machine(tf, "acc_dec = \"before\"", &[("1622.X", "64")]), (AccDec::Before, None));

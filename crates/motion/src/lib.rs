@@ -47,7 +47,7 @@ pub use leg::Place;
 pub use panel::{Panel, PanelRules, RapidOverride, ThreadHold};
 pub use path::ArcPath;
 pub use player::{Player, Sample};
-pub use rates::{Arrival, AuxiliaryTimes, MachineRates, Orientation, RapidSurfaceSpeed, SpeedWait};
+pub use rates::{AfterLaw, Arrival, AuxiliaryTimes, MachineRates, Orientation, RapidSurfaceSpeed, SpeedWait};
 pub use run::LEGS_MAX;
 pub use schedule::Schedule;
 pub use spindle::{Fluctuation, RPM_FENCE};

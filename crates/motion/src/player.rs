@@ -16,7 +16,7 @@ use crate::leg::{Leg, Place, X, Z};
 use crate::orders::leg_limit;
 use crate::planner::{Feedrate, Pace, RunLimits};
 use crate::run::{CuttingRun, LEGS_MAX};
-use crate::smoother::Smoother;
+use crate::smoother::{Lag, Smoother};
 use crate::spindle::{Shift, SpindleAngle};
 use crate::tap::TapPace;
 use crate::thread::ThreadPlan;
@@ -77,6 +77,8 @@ pub struct Player {
     blocks: VecDeque<Block>,
     lanes: Box<[Pace; AXIS_COUNT]>,
     smoother: Smoother,
+    /// In its place for cuts, where axes come behind exponentially.
+    lag: Option<Lag>,
     spindle: SpindleAngle,
     thread: ThreadChain,
     /// The change of gear that is going on.
@@ -85,6 +87,9 @@ pub struct Player {
     led: Option<SpindleAngle>,
     is_stuck: bool,
 }
+
+/// Of samples behind everything that was ordered.
+const NO_BLOCK: Block = Block { source: 0, line: 0, kind: Kind::Cutting };
 
 /// Caps of a rapid: one, and what overrides make of it.
 const LANE_CAPS: usize = 4;
@@ -112,6 +117,7 @@ impl Player {
             blocks: VecDeque::with_capacity(LEGS_MAX),
             lanes: Box::new(std::array::from_fn(|_| Pace::with_capacity(LANE_CAPS, unit))),
             smoother: Smoother::new(dynamics.corner_s, 1.0 / rate_hz),
+            lag: rates.lag_s().map(|lag_s| Lag::new(lag_s, 1.0 / rate_hz)),
             spindle: SpindleAngle::default(),
             thread: ThreadChain::default(),
             shift: None,
@@ -353,6 +359,8 @@ impl Player {
                 spindle.rpm = self.clock.spindle_order().rpm_at(self.clock.position().x.to_mm());
             }
             self.smoother.stand(&self.clock.place());
+            let place = self.clock.place();
+            self.lag.iter_mut().for_each(|lag| lag.stand(&place));
             let (feedrate, is_held) = self.acting_panel().cutting(self.mode);
             self.run.begin(self.dynamics.cutting(self.has_others), spindle);
             self.run.pace.preset(feedrate, is_held);
@@ -380,6 +388,7 @@ impl Player {
             match self.run.duration_s() {
                 Some(duration) if time_s >= duration => {
                     self.now_s += duration;
+                    self.let_axes_arrive(sink);
                     return true;
                 }
                 None if time_s > self.run.pace.planned_s() && !self.run.pace.is_held() => return false,
@@ -392,17 +401,40 @@ impl Player {
                 continue;
             }
             let settled_s = time_s - 2.0 * self.dynamics.corner_s;
-            if self.run.pace.is_held() && self.changes.is_empty() && self.run.pace.is_resting(settled_s) {
+            if self.run.pace.is_held()
+                && self.changes.is_empty()
+                && self.run.pace.is_resting(settled_s)
+                && self.lag.as_ref().is_none_or(Lag::has_arrived)
+            {
                 self.is_stuck = true;
                 return true;
             }
             let (place, state) = self.run.at(time_s);
             let passed = self.run.forget_before(time_s, state.at_mm);
             self.blocks.drain(..passed.min(self.blocks.len().saturating_sub(1)));
-            let place = self.smoother.next(&place);
-            let none = Block { source: 0, line: 0, kind: Kind::Cutting };
-            let block = self.blocks.front().copied().unwrap_or(none);
+            let place = match &mut self.lag {
+                Some(lag) => lag.next(&place),
+                None => self.smoother.next(&place),
+            };
+            let block = self.blocks.front().copied().unwrap_or(NO_BLOCK);
             self.give(place, state.speed_mm_per_s, block.kind, block, sink);
+        }
+    }
+
+    /// Behind the last cut the axes come to its end, where they lag behind. Nothing holds them on the way.
+    fn let_axes_arrive(&mut self, sink: &mut dyn FnMut(&Sample)) {
+        let block = self.blocks.back().copied().unwrap_or(NO_BLOCK);
+        loop {
+            let Some(lag) = self.lag.as_mut().filter(|lag| !lag.is_still()) else { return };
+            let goal = lag.goal();
+            // What is left at last is less than an increment, and gone at once.
+            let place = if lag.has_arrived() { goal } else { lag.next(&goal) };
+            if place == goal {
+                lag.stand(&goal);
+            }
+            self.look_at_panel();
+            self.give(place, 0.0, block.kind, block, sink);
+            self.now_s = self.next_s();
         }
     }
 

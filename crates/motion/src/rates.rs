@@ -2,7 +2,7 @@
 
 use turnwright_units::Rpm;
 
-use crate::{Dynamics, Fluctuation, Gears, Panel, PanelRules};
+use crate::{AccDec, Dynamics, Fluctuation, Gears, Panel, PanelRules};
 
 /// Which speed constant surface speed asks for during a rapid move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -70,6 +70,16 @@ pub struct Arrival {
     pub delay_s: f64,
 }
 
+/// How an axis comes behind where cuts get their acceleration after interpolation ([`crate::AccDec::After`]).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AfterLaw {
+    /// Its speed changes evenly: averaged over twice [`Dynamics::corner_s`].
+    #[default]
+    Even,
+    /// Exponentially: a lag whose time constant is twice [`Dynamics::corner_s`].
+    Exponential,
+}
+
 /// The orientation of the spindle by an auxiliary function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orientation {
@@ -135,6 +145,8 @@ pub struct MachineRates {
     pub rapid_surface_speed: RapidSurfaceSpeed,
     /// What the axes can do beyond their rates; `None`: they reach their rates at once.
     pub dynamics: Option<Dynamics>,
+    /// How axes come behind where cuts get their acceleration after interpolation.
+    pub after: AfterLaw,
     /// How the operator has set the panel from the start.
     pub panel: Panel,
     /// What the control makes of the panel.
@@ -169,6 +181,7 @@ impl Default for MachineRates {
             rpm_min_surface: 20,
             rapid_surface_speed: RapidSurfaceSpeed::AtEndPoint,
             dynamics: None,
+            after: AfterLaw::Even,
             panel: Panel::default(),
             panel_rules: PanelRules::default(),
         }
@@ -176,6 +189,12 @@ impl Default for MachineRates {
 }
 
 impl MachineRates {
+    /// The time constant of axes that come behind exponentially, s.
+    pub(crate) fn lag_s(&self) -> Option<f64> {
+        let dynamics = self.dynamics.filter(|dynamics| dynamics.acc_dec == AccDec::After)?;
+        (self.after == AfterLaw::Exponential).then_some(2.0 * dynamics.corner_s)
+    }
+
     /// The key of the first value that no machine can have: a rate that is not above zero, a time or a ramp
     /// below zero, or a number that is not finite. [`crate::Clock`] counts moves at such a rate as unknown.
     pub fn first_fault(&self) -> Option<&'static str> {

@@ -16,6 +16,8 @@ use crate::leg::Leg;
 use crate::orders::leg_limit;
 use crate::plain::PlainCut;
 use crate::run::{CuttingRun, LEGS_MAX};
+use crate::smoother::Lag;
+use crate::totals::Kind;
 use crate::{Dynamics, ESTIMATES, ESTIMATES_WITH_DYNAMICS, MachineRates, Panel};
 
 /// The time of a command, known or in the run that is being planned.
@@ -73,6 +75,12 @@ struct Planning {
     legs: Vec<Leg>,
     /// When the last leg that is over was.
     passed_s: f64,
+    /// What it took.
+    leg_s: f64,
+    /// The time constant of axes that come behind exponentially.
+    lag_s: Option<f64>,
+    /// Then of the last leg: how far the quickest axis goes on its last millimetre, and its length, mm.
+    last: (f64, f64),
     mode: PathMode,
     has_others: bool,
     /// In single-block operation the axes come to rest behind the last cut.
@@ -88,6 +96,9 @@ impl Schedule {
                 run: CuttingRun::new(dynamics, false, rates.panel != Panel::default()),
                 legs: Vec::new(),
                 passed_s: 0.0,
+                leg_s: 0.0,
+                lag_s: rates.lag_s(),
+                last: (0.0, 0.0),
                 mode: PathMode::Continuous,
                 has_others: false,
                 is_block_over: false,
@@ -184,7 +195,11 @@ impl Planning {
             self.take(entries);
         }
         entries.add(command, Entry { timing: cut.timing(), legs: 1, is_complete: true });
-        self.run.push(&cut.leg(), Order::Speed(cut.speed_mm_per_s), f64::INFINITY);
+        let leg = cut.leg();
+        if self.lag_s.is_some() {
+            self.last = quickest(&leg);
+        }
+        self.run.push(&leg, Order::Speed(cut.speed_mm_per_s), f64::INFINITY);
     }
 
     fn add(&mut self, command: Command, clock: &mut Clock, entries: &mut Entries) {
@@ -229,6 +244,9 @@ impl Planning {
             if let Some(entry) = entries.list.back_mut() {
                 entry.legs += 1;
             }
+            if self.lag_s.is_some() {
+                self.last = quickest(leg);
+            }
             self.run.push(leg, order, limit);
         }
         if let Some(entry) = entries.list.back_mut() {
@@ -241,7 +259,8 @@ impl Planning {
         while let Some(entry) = entries.list.get_mut(entries.known) {
             while entry.legs > 0 {
                 let Some(end_s) = self.run.take_end() else { return };
-                entry.timing.seconds += end_s - self.passed_s;
+                self.leg_s = end_s - self.passed_s;
+                entry.timing.seconds += self.leg_s;
                 self.passed_s = end_s;
                 entry.legs -= 1;
             }
@@ -252,16 +271,43 @@ impl Planning {
         }
     }
 
+    /// Seconds beyond those of settling until axes that lag behind are at the end of the run: as if the tool had gone all
+    /// of it as it went at last.
+    fn arriving_s(&self, lag_s: f64) -> f64 {
+        let in_position_s = if self.mode == PathMode::ExactStop { self.dynamics.in_position_s } else { 0.0 };
+        let settling_s = 2.0 * self.dynamics.corner_s + in_position_s;
+        let (share, length_mm) = self.last;
+        let speed = share * length_mm / (self.leg_s - settling_s).max(f64::MIN_POSITIVE);
+        (Lag::rest_s(lag_s, speed, (self.passed_s - settling_s).max(0.0)) - settling_s).max(0.0)
+    }
+
     /// Comes to rest.
     fn end_run(&mut self, clock: &mut Clock, entries: &mut Entries) {
         if !self.run.is_open() {
             return;
         }
         self.run.close(self.mode);
+        let is_cut = entries.unknown_count() > 0;
         while entries.unknown_count() > 0 {
             self.run.plan();
             self.take(entries);
         }
+        let lag_s = self.lag_s.filter(|_| is_cut);
+        if let Some(arriving_s) = lag_s.map(|lag_s| self.arriving_s(lag_s)) {
+            let is_cut = |entry: &&mut Entry| matches!(entry.timing.kind, Kind::Cutting | Kind::Threading);
+            entries
+                .list
+                .iter_mut()
+                .rev()
+                .find(is_cut)
+                .into_iter()
+                .for_each(|last| last.timing.seconds += arriving_s);
+        }
         clock.lag_behind(self.run.spindle.rpm);
     }
+}
+
+/// How far the quickest axis goes on the last millimetre of a leg, and the length of the leg, mm.
+fn quickest(leg: &Leg) -> (f64, f64) {
+    (leg.heading(1.0).direction.into_iter().fold(0.0, |most: f64, way| most.max(way.abs())), leg.length_mm)
 }

@@ -9,7 +9,7 @@ use turnwright_canon::{
 };
 use turnwright_dice::Dice;
 use turnwright_motion::{
-    ArcPath, Arrival, AuxiliaryTimes, BlockTime, BlockTimes, Clock, Dynamics, Fluctuation, Gear,
+    AfterLaw, ArcPath, Arrival, AuxiliaryTimes, BlockTime, BlockTimes, Clock, Dynamics, Fluctuation, Gear,
     GearSelection, Gears, Kind, LINES_MAX, MachineRates, Orientation, Panel, PanelRules, RapidOverride,
     RapidSurfaceSpeed, SPIRAL_TOLERANCE, Schedule, SpeedWait, Summary, TIME_TOLERANCE, Timing,
 };
@@ -369,6 +369,7 @@ fn nothing_makes_a_time_that_is_no_number() {
             rpm_min_surface: 0,
             rapid_surface_speed: RapidSurfaceSpeed::AtPresentPoint,
             dynamics: None,
+            after: AfterLaw::Exponential,
             home_mm_per_min: rate(),
             panel: Panel {
                 feed: rate(),

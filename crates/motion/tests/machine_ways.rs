@@ -5,7 +5,7 @@ use turnwright_canon::{
     Action, Command, Dwell, Origin, PathMode, RapidPath, Shape, SpindleSpeed, SpindleState, Turn,
 };
 use turnwright_motion::{
-    AccDec, Clock, Dynamics, Kind, MachineRates, Orientation, Player, Schedule, SpeedWait, Timing,
+    AccDec, AfterLaw, Clock, Dynamics, Kind, MachineRates, Orientation, Player, Schedule, SpeedWait, Timing,
 };
 use turnwright_units::{Feed, FeedPerMinute, Length, Position, Radius, Revolutions, Rpm, Seconds, WorkTip};
 
@@ -35,7 +35,11 @@ fn after() -> MachineRates {
 
 /// Places of X and Z at 10,000 ticks a second.
 fn places(actions: &[Action]) -> Vec<[f64; 2]> {
-    let mut player = Player::new(at(50.0, 0.0), after(), 10_000.0);
+    places_of(after(), actions)
+}
+
+fn places_of(rates: MachineRates, actions: &[Action]) -> Vec<[f64; 2]> {
+    let mut player = Player::new(at(50.0, 0.0), rates, 10_000.0);
     let mut places = Vec::new();
     let mut sink = |sample: &turnwright_motion::Sample| places.push([sample.place[0], sample.place[1]]);
     for action in actions {
@@ -84,6 +88,49 @@ fn after_interpolation_corners_and_arcs_are_cut_short() {
     let stop = [&[Action::PathMode(PathMode::ExactStop)], &corner[..]].concat();
     let nearest = places(&stop).iter().map(|[x, z]| (x - 30.0).hypot(*z)).fold(f64::INFINITY, f64::min);
     assert!(nearest < 1e-6, "{nearest}");
+}
+
+#[test]
+fn after_interpolation_axes_may_come_behind_exponentially() {
+    let rates = MachineRates { after: AfterLaw::Exponential, ..after() };
+    // Twice 32 ms is the time constant: at 100 mm/s the axes are 6.4 mm behind.
+    let (speed, time) = (100.0, 0.064);
+    let corner = [feed(at(30.0, 0.0), Shape::Line), feed(at(30.0, -40.0), Shape::Line)];
+    let seen = places_of(rates, &corner);
+    let nearest = seen.iter().map(|[x, z]| (x - 30.0).hypot(*z)).fold(f64::INFINITY, f64::min);
+    // In the 0.2 s before the corner the first axis has come to be that much behind.
+    let behind = 1.0 - (-0.2f64 / time).exp();
+    let expected = (0..4000)
+        .map(|index| f64::from(index) * 1e-3)
+        .map(|t: f64| speed * time * (behind * (-t).exp()).hypot(t - 1.0 + (-t).exp()))
+        .fold(f64::INFINITY, f64::min);
+    assert!((nearest - expected).abs() < 2e-3 * expected && nearest > 2.0, "{nearest} {expected}");
+    // It ends where it is told to, and the last step is less than an increment.
+    let [.., before, last] = seen[..] else { panic!("too short") };
+    assert!(last == [30.0, -40.0] && (before[1] + 40.0).abs() <= 1e-3, "{before:?} {last:?}");
+    // 60 mm at 100 mm/s, and until a micrometre is left of 6.4 mm: 8.76 time constants.
+    let arriving_s = time * (6.4e3f64).ln();
+    let played_s = (seen.len() - 1) as f64 / 10_000.0;
+    assert!((played_s - 0.6 - arriving_s).abs() < 1e-3, "{played_s} {arriving_s}");
+    for actions in
+        [&corner[..], &corner[..1], &[&[Action::PathMode(PathMode::ExactStop)], &corner[..]].concat()]
+    {
+        let mut schedule = Schedule::new(at(50.0, 0.0), rates);
+        actions.iter().for_each(|action| schedule.push(Command::new(action.clone(), Origin::line(1))));
+        schedule.finish();
+        let seconds: f64 =
+            std::iter::from_fn(|| schedule.next_known()).map(|(_, timing)| timing.seconds).sum();
+        let played_s = (places_of(rates, actions).len() - 1) as f64 / 10_000.0;
+        assert!((seconds - played_s).abs() < 2e-3, "{seconds} {played_s}");
+    }
+
+    // A circle of radius 20 shrinks by about (v·T)²/(2·r) = 1.02 mm; to the last digit r·(1 − 1/√(1 + (v·T/r)²)).
+    let shape = || Shape::Arc { turn: Turn::CounterClockwise, centre: at(30.0, 0.0) };
+    let seen = places_of(rates, &[feed(at(50.0, 0.0), shape()), feed(at(50.0, 0.0), shape())]);
+    let [x, z] = seen[seen.len() / 2];
+    let expected = 20.0 * (1.0 - 1.0 / (1.0 + (speed * time / 20.0).powi(2)).sqrt());
+    let shrunk = 20.0 - (x - 30.0).hypot(z);
+    assert!((shrunk - expected).abs() < 1e-4 && (shrunk - 1.024).abs() < 0.1, "{shrunk} {expected}");
 }
 
 #[test]

@@ -35,7 +35,7 @@ use turnwright_canon::{
 };
 use turnwright_dice::Dice;
 use turnwright_motion::{
-    AccDec, Arrival, Dynamics, Fluctuation, MachineRates, Panel, PanelRules, Player, RapidOverride,
+    AccDec, AfterLaw, Arrival, Dynamics, Fluctuation, MachineRates, Panel, PanelRules, Player, RapidOverride,
     RapidSurfaceSpeed, Sample, Schedule, SpeedWait, ThreadHold, Timing,
 };
 use turnwright_units::{
@@ -362,6 +362,7 @@ fn machine(dice: &mut Dice) -> MachineRates {
         home_mm_per_min: if dice.one_in(2) { 3_000.0 } else { 0.0 },
         holds_tapping: dice.one_in(2),
         fluctuation,
+        after: *dice.pick(&[AfterLaw::Even, AfterLaw::Exponential]),
         panel_rules,
         ..MachineRates::default()
     }
