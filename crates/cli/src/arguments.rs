@@ -1,9 +1,10 @@
 //! Commands and options.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::builder::styling::{AnsiColor, Styles};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, FromArgMatches, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use turnwright_control::SectionSpot;
 use turnwright_export::mesh::CHORD_MM;
@@ -77,6 +78,43 @@ pub(crate) enum Command {
     Setup(SetupOptions),
     Completions(Completions),
     Man(Man),
+}
+
+/// What describes the options of a command.
+type Describe = fn(clap::Command) -> clap::Command;
+
+/// Every command by its name.
+const COMMANDS: [(&str, Describe); 15] = [
+    ("run", Run::augment_args),
+    ("check", Check::augment_args),
+    ("trace", Trace::augment_args),
+    ("plot", Plot::augment_args),
+    ("part", PartOptions::augment_args),
+    ("motion", Motion::augment_args),
+    ("time", Time::augment_args),
+    ("measure", Measure::augment_args),
+    ("diff", Diff::augment_args),
+    ("explain", Explain::augment_args),
+    ("controls", Controls::augment_args),
+    ("data", Data::augment_args),
+    ("setup", SetupOptions::augment_args),
+    ("completions", Completions::augment_args),
+    ("man", Man::augment_args),
+];
+
+impl Arguments {
+    /// What `words` ask for, where the first of them names a command and nothing is wrong with the others. Whoever has
+    /// to be helped needs the description of all commands.
+    pub(crate) fn of_one_command(words: &[OsString]) -> Option<Self> {
+        let wanted = words.get(1)?;
+        let (name, describe) = COMMANDS.into_iter().find(|(name, _)| wanted == name)?;
+        let mut all = Presentation::augment_args(clap::Command::new("turnwright"))
+            .subcommand(describe(clap::Command::new(name)));
+        let matches = all.try_get_matches_from_mut(words).ok()?;
+        // Taking a description apart would take a good part of a short run.
+        std::mem::forget(all);
+        Self::from_arg_matches(&matches).ok()
+    }
 }
 
 /// Which control and setup a program meets, and the switches of the machine.
@@ -543,4 +581,63 @@ fn assignment(text: &str) -> Result<(String, String), String> {
         return Err(fault());
     }
     Ok((number.trim().to_string(), value.trim().to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn each_command_alone_is_as_it_is_among_all() {
+        let mut all = Arguments::command();
+        all.build();
+        let names = |command: &clap::Command| -> Vec<String> {
+            command.get_arguments().map(|argument| format!("{argument:?}")).collect()
+        };
+        let commands = all.get_subcommands().filter(|command| command.get_name() != "help");
+        let mut known = COMMANDS.into_iter();
+        for command in commands {
+            let (name, describe) = known.next().expect("is in the list");
+            assert_eq!(name, command.get_name());
+            let mut alone = Presentation::augment_args(
+                clap::Command::new("turnwright").version("1").propagate_version(true),
+            )
+            .subcommand(describe(clap::Command::new(name)));
+            alone.build();
+            let alone = alone.find_subcommand(name).expect("was added");
+            assert_eq!(names(alone), names(command), "{name}");
+        }
+        assert!(known.next().is_none());
+    }
+
+    #[test]
+    fn what_is_wrong_or_asks_for_help_is_left_to_the_description_of_all() {
+        let ask = |line: &str| {
+            let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
+            Arguments::of_one_command(&words).map(|arguments| format!("{arguments:?}"))
+        };
+        for line in [
+            "turnwright",
+            "turnwright --lang zh check a.nc",
+            "turnwright help check",
+            "turnwright check --help",
+            "turnwright check -V",
+            "turnwright check",
+            "turnwright chek a.nc",
+            "turnwright check a.nc --skip 10",
+            "turnwright check a.nc --alarms-only --deny warnings",
+        ] {
+            assert_eq!(ask(line), None, "{line}");
+        }
+        for line in [
+            "turnwright check a.nc --alarms-only --lang zh",
+            "turnwright time a.nc --color never",
+            "turnwright controls",
+        ] {
+            let all = Arguments::try_parse_from(line.split(' ')).expect("is in order");
+            assert_eq!(ask(line), Some(format!("{all:?}")), "{line}");
+        }
+    }
 }

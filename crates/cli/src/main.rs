@@ -44,8 +44,13 @@ fn main() -> ExitCode {
 
 /// What was asked for.
 fn arguments() -> Result<Arguments, clap::Error> {
+    let words: Vec<_> = std::env::args_os().collect();
+    // Describing every command takes as long as checking a short program does.
+    if let Some(arguments) = Arguments::of_one_command(&words) {
+        return Ok(arguments);
+    }
     let mut command = Arguments::command();
-    let mut matches = command.try_get_matches_from_mut(std::env::args_os())?;
+    let mut matches = command.try_get_matches_from_mut(words)?;
     let arguments = Arguments::from_arg_matches_mut(&mut matches).map_err(|error| error.format(&mut command));
     // Taking the description of every command apart would take a good part of a short run.
     std::mem::forget(command);

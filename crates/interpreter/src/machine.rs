@@ -261,15 +261,16 @@ impl Interpreter {
             control.policies.decimal_rule == turnwright_control::policy::DecimalRule::AlwaysCalculator;
         let mut settings =
             Settings::new(&control.parameters, &control.policies, always, control.limits.number_digits);
+        let machine = setup.machine()?;
         if settings.thread_feed_max_mm_per_min.is_none() {
             // What the control does not limit, the machine does.
-            settings.thread_feed_max_mm_per_min = Some(setup.machine()?.cutting_max_mm_per_min);
+            settings.thread_feed_max_mm_per_min = Some(machine.cutting_max_mm_per_min);
             settings.thread_feed_is_assumed =
                 setup.machine.is_none() && !setup.rates.contains_key("cutting_max_mm_per_min");
         }
         let dispatch = Dispatch::new(&control);
         let macros = Macros::new(&control);
-        let machine = setup.machine()?.limited_by(&control.parameters);
+        let machine = machine.limited_by(&control.parameters);
         let machine_limits = MachineLimits::new(&machine);
         let strokes = Strokes::new(&control.parameters, &machine.axes);
         let zeros = Zeros::new(&control, setup, &machine)?;

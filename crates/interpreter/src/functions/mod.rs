@@ -442,14 +442,14 @@ impl Dispatch {
         let functions = Functions;
         let mut table = Box::new([0u8; 10_000]);
         let mut groups = [0; ALL.len()];
-        let entries =
-            || ALL.iter().enumerate().filter_map(|(place, f)| Some((place, functions.get(f.name)?)));
+        let entries = ALL.iter().enumerate().filter_map(|(place, f)| Some((place, functions.get(f.name)?)));
+        let entries: Vec<_> = entries.collect();
         // What a parameter brings in comes last, in place of what had the code before.
-        let plain = entries().filter(|(_, entry)| entry.only_with().is_none());
-        let chosen = entries().filter(|(_, entry)| {
+        let plain = entries.iter().filter(|(_, entry)| entry.only_with().is_none());
+        let chosen = entries.iter().filter(|(_, entry)| {
             entry.only_with().is_some_and(|parameter| control.parameters.bit(parameter))
         });
-        for (place, entry) in plain.chain(chosen) {
+        for &(place, entry) in plain.chain(chosen) {
             groups[place] = entry.group().0;
             if !entry.is_on(control.code_table) {
                 continue;
