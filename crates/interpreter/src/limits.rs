@@ -33,7 +33,7 @@ pub const HELD_TEXT_BYTES_MAX: u64 = 4 * 1024 * 1024;
 pub const CYCLE_MOVES_MAX: u64 = 5_000_000;
 
 /// Moves made by all cycles of one run (`cycle-move-limit`).
-pub const RUN_MOVES_MAX: u64 = 20_000_000;
+pub const RUN_MOVES_MAX: u64 = 8_000_000;
 
 /// Warnings kept; further ones are counted (`too-many-diagnostics`).
 pub const WARNINGS_MAX: usize = 200;
