@@ -11,7 +11,7 @@ use turnwright_diagnostics::SourceId;
 use turnwright_export::formats::jsonl::CommandWriter;
 use turnwright_geometry::{Bend, Outline, Point, Segment};
 use turnwright_interpreter::{Environment, Interpreter, Options, ReadFault, Step};
-use turnwright_motion::{Dynamics, MachineRates, Schedule};
+use turnwright_motion::{Dynamics, LEGS_MAX, MachineRates, Panel, Player, Schedule};
 use turnwright_stock::{Cutter, Section, Sweep};
 use turnwright_units::{Feed, FeedPerMinute, Length, Position, Radius, WorkTip};
 
@@ -19,7 +19,7 @@ use turnwright_units::{Feed, FeedPerMinute, Length, Position, Radius, WorkTip};
 type Work = fn(u32) -> Result<(), String>;
 
 /// The pieces.
-const PIECES: [(&str, Work); 7] = [
+const PIECES: [(&str, Work); 8] = [
     ("lines", |count| interpret(&lines(), count, false)),
     ("arcs", |count| interpret(&arcs(), count, false)),
     ("loop", |count| interpret(ROUNDS, count, false)),
@@ -27,6 +27,7 @@ const PIECES: [(&str, Work); 7] = [
     ("trace", |count| interpret(&lines(), count, true)),
     ("stock", stock),
     ("planner", planner),
+    ("overrides", overrides),
 ];
 
 /// Blocks of the programs that are written out: as many as are ever counted.
@@ -151,6 +152,35 @@ fn stock(count: u32) -> Result<(), String> {
 }
 
 /// Short lines along a wave are planned.
+/// The dearest ticks of the player: as many short lines are known ahead as ever are, and in each tick the operator turns
+/// the feed override, so that all of them are planned anew.
+fn overrides(count: u32) -> Result<(), String> {
+    let length = |mm: f64| Length::from_nm((mm * 1e6).round() as i64);
+    let at = |x: f64, z: f64| -> Position<WorkTip> { Position::new(Radius(length(x)), length(z)) };
+    let feed = Feed::PerMinute(FeedPerMinute(length(1200.0)));
+    let rates = MachineRates { dynamics: Some(Dynamics::default()), ..MachineRates::default() };
+    let mut player = Player::new(at(30.0, 0.0), rates, 1000.0);
+    for tick in 1..=count {
+        let feed = [1.0, 0.9, 1.1, 0.6, 1.3][tick as usize % 5];
+        player.set_at(f64::from(tick) / 1000.0, Panel { feed, ..Panel::default() });
+    }
+    let mut ticks = 0;
+    let mut index = 0;
+    // At 20 mm/s a tick passes two lines at most.
+    while ticks < count {
+        index += 1;
+        if index > LEGS_MAX as u32 + 2 * count {
+            return Err(format!("only {ticks} ticks"));
+        }
+        let way = f64::from(index) * 0.01;
+        let to = at(30.0 + 0.2 * (way * 3.0).sin() + [0.0, 0.003][index as usize % 2], -way);
+        let action = Action::Feed { to, shape: Shape::Line, feed, others: None };
+        player.push(&Command::new(action, Origin::line(index)), &mut |_| ticks += 1);
+    }
+    std::hint::black_box(player.played_s());
+    Ok(())
+}
+
 fn planner(count: u32) -> Result<(), String> {
     let length = |mm: f64| Length::from_nm((mm * 1e6).round() as i64);
     let at = |x: f64, z: f64| -> Position<WorkTip> { Position::new(Radius(length(x)), length(z)) };
