@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use crate::Dynamics;
 use crate::dynamics::{CornerLaw, Demand};
 use crate::leg::{Heading, Leg};
-use crate::planner::{Full, Pace, SPEED_MIN_MM_PER_S, least};
+use crate::planner::{Full, Pace, RunLimits, SPEED_MIN_MM_PER_S, least, most};
 
 /// Stretches that wait for the corners behind them. With more inside one corner's time, the corner is passed as
 /// slowly as if the stretch behind were all corners.
@@ -23,6 +23,7 @@ struct Stretch {
     soonest_s: f64,
     ordered_mm_per_s: f64,
     limit_mm_per_s: f64,
+    share: f64,
     corner_mm_per_s: f64,
     /// That of all corners before the one at its end.
     demand: Demand,
@@ -41,6 +42,12 @@ pub(crate) struct Corners {
     end_mm: f64,
     soonest_s: f64,
     heading: Option<Heading>,
+    /// What the path is limited to.
+    limits: RunLimits,
+    /// Where the last corner was, when no tool was sooner there, and its speed were it alone.
+    last_mm: f64,
+    last_s: f64,
+    last_mm_per_s: f64,
     /// That of all corners met.
     demand: Demand,
     /// The first of those waiting whose corner may be passed together with the next one.
@@ -60,14 +67,21 @@ impl Corners {
             end_mm: 0.0,
             soonest_s: 0.0,
             heading: None,
+            limits: dynamics.cutting(false),
+            last_mm: 0.0,
+            last_s: 0.0,
+            last_mm_per_s: 0.0,
             demand: Demand::default(),
             group: 0,
             apart: None,
         }
     }
 
-    pub(crate) fn clear(&mut self) {
+    /// Begins a path at rest.
+    pub(crate) fn begin(&mut self, limits: RunLimits) {
         self.waiting.clear();
+        self.limits = limits;
+        (self.last_mm, self.last_s, self.last_mm_per_s) = (0.0, 0.0, 0.0);
         self.fastest_mm_per_s = 0.0;
         (self.end_mm, self.soonest_s, self.heading) = (0.0, 0.0, None);
         (self.demand, self.group, self.apart) = (Demand::default(), 0, None);
@@ -80,10 +94,41 @@ impl Corners {
             && self.law.time_s > 0.0
         {
             before.has_corner = true;
+            let met = self.demand;
             self.law.add(&mut self.demand, end, &start);
+            self.pass(self.law.speed(&self.demand.since(&met)));
             self.look_back();
         }
         self.heading = Some(if leg.arc.is_some() { leg.heading(1.0) } else { start });
+    }
+
+    /// No tool is sooner at the corner just met than the acceleration lets it, and the jerk.
+    fn pass(&mut self, mm_per_s: f64) {
+        let way = self.end_mm - self.last_mm;
+        let acceleration = self.limits.acceleration_mm_per_s2;
+        let (slow, fast) = (least(self.last_mm_per_s, mm_per_s), most(self.last_mm_per_s, mm_per_s));
+        let change = 2.0 * acceleration * way;
+        let seconds = if fast * fast - slow * slow >= change {
+            ((slow * slow + change).sqrt() - slow) / acceleration
+        } else {
+            let peak = ((slow * slow + fast * fast + change) / 2.0).sqrt();
+            (2.0 * peak - slow - fast) / acceleration
+        };
+        // From full acceleration to full deceleration the tool gets no further in one time.
+        let time = self.law.time_s;
+        let is_apart = way >= time * (fast + self.limits.jerk_mm_per_s3 * time * time / 12.0);
+        let seconds = if is_apart { most(seconds, time) } else { seconds };
+        self.soonest_s = most(self.soonest_s, self.last_s + seconds);
+        if let Some(before) = self.waiting.back_mut() {
+            before.soonest_s = self.soonest_s;
+        }
+        (self.last_mm, self.last_s, self.last_mm_per_s) = (self.end_mm, self.soonest_s, mm_per_s);
+    }
+
+    /// The only stretch of a path: its ordered speed and its limit.
+    pub(crate) fn only_speeds(&self) -> Option<[f64; 2]> {
+        let first = self.waiting.front().filter(|first| first.end_mm == first.length_mm)?;
+        (self.waiting.len() == 1).then_some([first.ordered_mm_per_s, first.limit_mm_per_s])
     }
 
     /// Whether there is room for another stretch; a corner before it is known by now.
@@ -92,7 +137,7 @@ impl Corners {
     }
 
     /// A stretch of the leg that has begun.
-    pub(crate) fn add(&mut self, length_mm: f64, ordered_mm_per_s: f64, limit_mm_per_s: f64) {
+    pub(crate) fn add(&mut self, length_mm: f64, ordered_mm_per_s: f64, (limit_mm_per_s, share): (f64, f64)) {
         // With nobody who could raise it, the order is a limit: then stretches of one speed are alike.
         let limit_mm_per_s =
             if self.has_operator { limit_mm_per_s } else { least(ordered_mm_per_s, limit_mm_per_s) };
@@ -105,6 +150,7 @@ impl Corners {
             soonest_s: self.soonest_s,
             ordered_mm_per_s,
             limit_mm_per_s,
+            share,
             corner_mm_per_s: f64::INFINITY,
             demand: self.demand,
             has_corner: false,
@@ -160,7 +206,7 @@ impl Corners {
             if !pace.has_room(2) {
                 return Err(Full);
             }
-            pace.push(first.length_mm, first.ordered_mm_per_s, first.limit_mm_per_s)?;
+            pace.push_sharing(first.length_mm, first.ordered_mm_per_s, first.limit_mm_per_s, first.share)?;
             if first.has_corner {
                 let apart = (self.end_mm - first.end_mm) / self.law.time_s;
                 let is_early = !is_over && !is_apart;

@@ -4,8 +4,8 @@
 //! has its share of what an axis can do, so that together they never ask for more. Rapids, alone on a straight way,
 //! have all of it.
 
-use crate::leg::{Heading, Place};
-use crate::planner::{RunLimits, most};
+use crate::leg::{Heading, Leg, Place};
+use crate::planner::{RunLimits, SHARE_MAX, SHARE_MIN, most};
 
 /// Acceleration and jerk of one axis: mm of slide, or degrees, per s² and s³.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,15 +81,19 @@ impl Default for Dynamics {
     }
 }
 
-/// Shares of acceleration on a cutting path: along it, towards the centres of arcs, at corners. Together 1.
-const ALONG: f64 = 0.25;
-const BENDING: f64 = 0.4;
-const CORNER: f64 = 0.35;
+/// Shares of acceleration and jerk on a cutting path: at corners, and on the legs between them. Together 1.
+const CORNER: f64 = 0.2;
+const LEG: f64 = 0.8;
 
-/// Shares of jerk on a cutting path. Together 1.
-const JERK_ALONG: f64 = 0.3;
-const JERK_BENDING: f64 = 0.45;
-const JERK_CORNER: f64 = 0.25;
+/// What a leg that hardly bends has along it: a little less than its share, so that most arcs are like lines.
+const ALONG: f64 = 0.78;
+
+/// Arcs are passed a little slower than they could, so that something is left for speeding up on them.
+const ARC: f64 = 0.95;
+
+/// Up to this override the speed ordered on an arc is had, where the machine can; what is left of the acceleration is
+/// had along the path.
+pub(crate) const ARC_OVERRIDE: f64 = 2.0;
 
 /// Acceleration after interpolation: before it the path gets its feed as good as at once, mm/s² and mm/s³.
 const AT_ONCE: RunLimits = RunLimits { acceleration_mm_per_s2: 1e6, jerk_mm_per_s3: 1e10 };
@@ -147,38 +151,75 @@ impl Dynamics {
         RunLimits {
             acceleration_mm_per_s2: (ALONG * least(|axis| axis.acceleration_per_s2))
                 .min(self.cutting_mm_per_s2),
-            jerk_mm_per_s3: JERK_ALONG * least(|axis| axis.jerk_per_s3),
+            jerk_mm_per_s3: ALONG * least(|axis| axis.jerk_per_s3),
         }
     }
 
-    /// The highest speed on an arc in a plane of two axes, mm/s.
+    /// The highest speed on an arc in a plane of two axes, mm/s, and what it leaves along the path, when `wanted` is the
+    /// highest speed that anybody will want there.
     ///
-    /// Acceleration towards the centre: v²/r. Jerk: 3·v·a/r while the speed changes by `a`, and v³/r² always; each has
-    /// half of the share.
-    pub(crate) fn arc_speed(&self, axes: [usize; 2], radius_mm: f64, along: RunLimits) -> f64 {
+    /// At speed v on radius r, with the acceleration a along it, an arc takes the acceleration v²/r towards its centre;
+    /// its jerk is v³/r² against the way and 3·v·a/r across it, beside the jerk along it. Each pair stands at a right
+    /// angle: together they stay within the circle of what the weaker axis has.
+    pub(crate) fn arc(&self, axes: [usize; 2], radius_mm: f64, along: RunLimits, wanted: f64) -> (f64, f64) {
         if self.acc_dec == AccDec::After {
-            return f64::INFINITY;
+            return (f64::INFINITY, 1.0);
         }
         let least = |of: fn(&AxisDynamics) -> f64| of(&self.axes[axes[0]]).min(of(&self.axes[axes[1]]));
-        let acceleration = BENDING * least(|axis| axis.acceleration_per_s2);
-        let jerk = JERK_BENDING / 2.0 * least(|axis| axis.jerk_per_s3);
-        (acceleration * radius_mm)
+        let acceleration = LEG * least(|axis| axis.acceleration_per_s2);
+        let jerk = LEG * least(|axis| axis.jerk_per_s3);
+        let window_s = along.window_s();
+        // With the least share along the path: 0.98² + 0.2² = 1, and (0.2 + 0.6)² + (0.2 · 3)² = 1.
+        let fastest = (0.98 * acceleration * radius_mm)
             .sqrt()
-            .min(jerk * radius_mm / (3.0 * along.acceleration_mm_per_s2))
-            .min(libm::cbrt(jerk * radius_mm * radius_mm))
+            .min(libm::cbrt(0.6 * jerk * radius_mm * radius_mm))
+            .min(radius_mm / window_s);
+        let speed = (ARC * fastest).min(wanted);
+        let turning = speed / radius_mm;
+        let pull = speed * turning / acceleration;
+        let (back, across) = (speed * turning * turning / jerk, 3.0 * turning * window_s);
+        // (share + back)² + (share · across)² = 1
+        let width = 1.0 + across * across;
+        let jerky = ((back * back + width * (1.0 - back * back)).sqrt() - back) / width;
+        let share = jerky.min((1.0 - pull * pull).sqrt()) * LEG / ALONG;
+        (speed, share.clamp(SHARE_MIN, 1.0))
+    }
+
+    /// What a straight leg that is passed at `speed_mm_per_s` has along the path: each axis gives what it has, so that
+    /// a slanted way has more. A short leg, which others reach over, and a slow one, which has its speed at once
+    /// anyhow, are like any other: legs that are alike are planned as one.
+    pub(crate) fn line_share(&self, leg: &Leg, along: RunLimits, speed_mm_per_s: f64) -> f64 {
+        let ramp = along.acceleration_mm_per_s2 * along.window_s();
+        if speed_mm_per_s < ramp / 4.0 || leg.length_mm < 2.0 * along.reach_mm(speed_mm_per_s) {
+            return 1.0;
+        }
+        let mut share = self.cutting_mm_per_s2 / along.acceleration_mm_per_s2;
+        for (axis, dynamics) in self.axes.iter().enumerate() {
+            let way = (leg.to[axis] - leg.from[axis]).abs() / leg.length_mm;
+            if way > 0.0 {
+                share = share
+                    .min(ALONG * dynamics.acceleration_per_s2 / (way * along.acceleration_mm_per_s2))
+                    .min(ALONG * dynamics.jerk_per_s3 / (way * along.jerk_mm_per_s3));
+            }
+        }
+        share.clamp(1.0, SHARE_MAX)
     }
 
     /// What corners ask for.
     pub(crate) fn corner_law(&self) -> CornerLaw {
         let time = self.corner_s;
-        let jerk = |axis: usize| JERK_CORNER * self.axes[axis].jerk_per_s3;
-        let step = |axis: usize| (CORNER * self.axes[axis].acceleration_per_s2).min(jerk(axis) * time) * time;
+        let jerk = |axis: usize| CORNER * self.axes[axis].jerk_per_s3;
+        let acceleration = |axis: usize| CORNER * self.axes[axis].acceleration_per_s2;
+        // Of two corners a time apart the jerks may add up, the accelerations not. Where they may, no corner loses.
+        let is_brief = (0..AXIS_COUNT).all(|axis| jerk(axis) * time >= 2.0 * acceleration(axis));
+        let (span, fold) = if is_brief { (time, 2.0) } else { (2.0 * time, 1.0) };
+        let step = |axis: usize| acceleration(axis).min(jerk(axis) * time / fold) * time;
         CornerLaw {
             // After interpolation corners are cut short, whatever the speed.
-            time_s: if self.acc_dec == AccDec::After { 0.0 } else { 2.0 * time },
+            time_s: if self.acc_dec == AccDec::After { 0.0 } else { span },
             per_turn: std::array::from_fn(|axis| 1.0 / step(axis)),
             per_bend: std::array::from_fn(|axis| 1.0 / (time * jerk(axis))),
-            turn_jerk: std::array::from_fn(|axis| step(axis) / (time * time * jerk(axis))),
+            turn_jerk: std::array::from_fn(|axis| fold * step(axis) / (time * time * jerk(axis))),
         }
     }
 }
@@ -186,10 +227,13 @@ impl Dynamics {
 /// How fast corners may be passed.
 ///
 /// The axes are averaged twice over [`Dynamics::corner_s`], T: a change of speed by v·turn takes an acceleration of
-/// v·turn/T and a jerk of v·turn/T², a change of acceleration by v²·bend a jerk of v²·bend/T.
+/// v·turn/T and a jerk of v·turn/T², a change of acceleration by v²·bend a jerk of v²·bend/T. The weight that such a
+/// change has at an instant falls evenly to both sides, to nothing at T: it is the mean over the windows of length T
+/// around that instant. So accelerations are no more than those of all changes within one T; the jerk is that of one T
+/// less that of the next, and no more than that of all changes within 2·T.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CornerLaw {
-    /// Seconds in which a corner is passed: those that lie closer together count together.
+    /// Corners that lie closer together in time count together, s.
     pub(crate) time_s: f64,
     /// Demand of a change of direction by 1.
     per_turn: Place,

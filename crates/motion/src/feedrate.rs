@@ -17,6 +17,18 @@ pub(crate) enum Order {
     Surface { law: SurfaceLaw, feed_mm_per_rev: f64, slowness: Slowness },
 }
 
+impl Order {
+    /// The highest speed that is ordered anywhere on a leg, mm/s.
+    pub(crate) fn highest(self, leg: &Leg) -> f64 {
+        match self {
+            Self::Speed(speed) => speed,
+            Self::Surface { law, feed_mm_per_rev, .. } => {
+                feed_mm_per_rev * law.rpm_at(leg.nearest_mm()) / 60.0
+            }
+        }
+    }
+}
+
 /// The spindle that a path is cut with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TurningSpindle {
@@ -39,14 +51,14 @@ const STRETCHES_MAX: f64 = 8192.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stretches {
     order: Order,
-    /// The highest speed on the leg, whatever is ordered.
-    pub(crate) limit_mm_per_s: f64,
+    /// The highest speed on the leg, mm/s, whatever is ordered, and its share of the acceleration.
+    pub(crate) limit: (f64, f64),
     done_mm: f64,
 }
 
 impl Stretches {
-    pub(crate) fn new(order: Order, limit_mm_per_s: f64) -> Self {
-        Self { order, limit_mm_per_s, done_mm: 0.0 }
+    pub(crate) fn new(order: Order, limit: (f64, f64)) -> Self {
+        Self { order, limit, done_mm: 0.0 }
     }
 
     /// Whether the whole leg has been given.

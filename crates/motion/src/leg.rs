@@ -87,6 +87,20 @@ impl Leg {
         heading
     }
 
+    /// How near it comes to the axis of the spindle, mm.
+    pub(crate) fn nearest_mm(&self) -> f64 {
+        let (mut least, mut most) = (self.from[X].min(self.to[X]), self.from[X].max(self.to[X]));
+        if let Some(LegArc { axes, path }) = &self.arc {
+            let points = path.turning_points();
+            for x in points.map(|point| if axes[0] == X { point.z } else { point.x }) {
+                if axes.contains(&X) {
+                    (least, most) = (least.min(x), most.max(x));
+                }
+            }
+        }
+        if least < 0.0 && most > 0.0 { 0.0 } else { least.abs().min(most.abs()) }
+    }
+
     /// The smaller of the radii at both ends of an arc.
     pub(crate) fn radius_mm(&self) -> Option<f64> {
         self.arc.map(|arc| arc.path.start_radius_mm.min(arc.path.end_radius_mm))

@@ -6,10 +6,11 @@ use turnwright_units::{Feed, Position, WorkTip};
 
 use crate::Dynamics;
 use crate::clock::Clock;
+use crate::dynamics::ARC_OVERRIDE;
 use crate::feedrate::{Order, TurningSpindle};
 use crate::leg::{B, C, Leg, LegArc, Place, V, X, Y, Z};
 use crate::path::{ArcPath, CutPath, stretches};
-use crate::planner::RunLimits;
+use crate::planner::{RunLimits, least, most};
 use crate::spindle::SurfaceLaw;
 use crate::surface::Slowness;
 
@@ -166,8 +167,14 @@ impl CutOrder<'_> {
     }
 }
 
-/// The highest speed on a leg, mm/s, whatever the feed.
-pub(crate) fn leg_limit(leg: &Leg, clock: &Clock, dynamics: &Dynamics, along: RunLimits) -> f64 {
+/// What limits a leg, whatever the feed: the highest speed, mm/s, and its share of the acceleration.
+pub(crate) fn leg_limit(
+    leg: &Leg,
+    order: Order,
+    clock: &Clock,
+    dynamics: &Dynamics,
+    along: RunLimits,
+) -> (f64, f64) {
     let rates = clock.rates();
     let per_minute = [
         rates.rapid_x_mm_per_min,
@@ -196,7 +203,11 @@ pub(crate) fn leg_limit(leg: &Leg, clock: &Clock, dynamics: &Dynamics, along: Ru
     slowness = slowness.max(moving / rates.cutting_max_mm_per_min);
     let limit = 1.0 / (60.0 * slowness);
     match (leg.arc, leg.radius_mm()) {
-        (Some(arc), Some(radius_mm)) => limit.min(dynamics.arc_speed(arc.axes, radius_mm, along)),
-        _ => limit,
+        (Some(arc), Some(radius_mm)) => {
+            let dry_run = clock.panel().dry_run_mm_per_min.unwrap_or(0.0) / 60.0;
+            let wanted = most(ARC_OVERRIDE * order.highest(leg), dry_run);
+            dynamics.arc(arc.axes, radius_mm, along, limit.min(wanted))
+        }
+        _ => (limit, dynamics.line_share(leg, along, least(limit, order.highest(leg)))),
     }
 }

@@ -61,6 +61,8 @@ pub struct Player {
     dynamics: Dynamics,
     rate_hz: f64,
     tick: u64,
+    /// What the last tick belonged to.
+    last: Option<(Block, Kind)>,
     /// When what is being done began.
     now_s: f64,
     panel: Panel,
@@ -105,6 +107,7 @@ impl Player {
             dynamics,
             rate_hz,
             tick: 0,
+            last: None,
             now_s: 0.0,
             panel: rates.panel,
             changes: VecDeque::new(),
@@ -229,6 +232,10 @@ impl Player {
     pub fn finish(&mut self, sink: &mut dyn FnMut(&Sample)) {
         self.play_thread(sink);
         self.end_run(sink);
+        if let Some((block, kind)) = self.last.filter(|_| !self.is_stuck) {
+            // The last tick of a move may lie before its end.
+            self.give(self.clock.place(), 0.0, kind, block, sink);
+        }
     }
 
     fn next_s(&self) -> f64 {
@@ -323,6 +330,7 @@ impl Player {
             line: block.line,
         });
         self.tick += 1;
+        self.last = Some((block, kind));
     }
 
     /// Stands still.
@@ -362,7 +370,7 @@ impl Player {
             let place = self.clock.place();
             self.lag.iter_mut().for_each(|lag| lag.stand(&place));
             let (feedrate, is_held) = self.acting_panel().cutting(self.mode);
-            self.run.begin(self.dynamics.cutting(self.has_others), spindle);
+            self.run.begin(self.dynamics.cutting(self.has_others), self.clock.rates(), spindle);
             self.run.pace.preset(feedrate, is_held);
         }
         let mut legs = std::mem::take(&mut self.legs);
@@ -372,7 +380,7 @@ impl Player {
             while !self.run.has_room() && !self.is_stuck {
                 self.play_run(sink);
             }
-            let limit = leg_limit(leg, &self.clock, &self.dynamics, self.run.pace.limits());
+            let limit = leg_limit(leg, order.order, &self.clock, &self.dynamics, self.run.pace.limits());
             self.run.push(leg, order.order, limit);
             self.blocks.push_back(block);
         }
@@ -400,7 +408,8 @@ impl Player {
                 self.run.plan();
                 continue;
             }
-            let settled_s = time_s - 2.0 * self.dynamics.corner_s;
+            let rounding_s = if self.run.is_rounded { 2.0 * self.dynamics.corner_s } else { 0.0 };
+            let settled_s = time_s - rounding_s;
             if self.run.pace.is_held()
                 && self.changes.is_empty()
                 && self.run.pace.is_resting(settled_s)
@@ -414,7 +423,8 @@ impl Player {
             self.blocks.drain(..passed.min(self.blocks.len().saturating_sub(1)));
             let place = match &mut self.lag {
                 Some(lag) => lag.next(&place),
-                None => self.smoother.next(&place),
+                None if self.run.is_rounded => self.smoother.next(&place),
+                None => place,
             };
             let block = self.blocks.front().copied().unwrap_or(NO_BLOCK);
             self.give(place, state.speed_mm_per_s, block.kind, block, sink);
@@ -491,6 +501,7 @@ impl Player {
                 let _ = lane.push(length, speed, speed);
             }
             lane.close();
+            lane.ease();
         }
         let timing = self.clock.advance(command);
         loop {
@@ -556,6 +567,7 @@ impl Player {
         // An empty lane has room for one.
         let _ = lane.push(pace.way_mm, pace.speed_mm_per_s, pace.speed_mm_per_s);
         lane.close();
+        lane.ease();
         loop {
             let time_s = self.next_s() - self.now_s;
             self.lanes[X].plan();

@@ -7,11 +7,11 @@ use std::collections::VecDeque;
 
 use turnwright_canon::PathMode;
 
-use crate::Dynamics;
 use crate::corners::Corners;
 use crate::feedrate::{Order, Stretches, TurningSpindle};
 use crate::leg::{Leg, Place};
 use crate::planner::{Pace, PathState, RunLimits};
+use crate::{AccDec, Dynamics, MachineRates};
 
 /// Legs known at once: the look-ahead.
 pub const LEGS_MAX: usize = 2048;
@@ -27,6 +27,10 @@ pub(crate) struct CuttingRun {
     legs: Option<VecDeque<Leg>>,
     end_mm: f64,
     corners: Corners,
+    /// The first leg, while there is no other and it is straight.
+    only: Option<Leg>,
+    /// Corners are cut short, which takes its time at the end too.
+    pub(crate) is_rounded: bool,
     /// The last leg, when there are stretches left of it.
     current: Option<(Leg, Stretches)>,
     pub(crate) spindle: TurningSpindle,
@@ -45,6 +49,8 @@ impl CuttingRun {
             legs: is_played.then(|| VecDeque::with_capacity(LEGS_MAX)),
             end_mm: 0.0,
             corners: Corners::new(&dynamics, has_operator),
+            only: None,
+            is_rounded: true,
             current: None,
             spindle: TurningSpindle { rpm: 0.0, ramp_rpm_per_s: 0.0 },
             is_over: true,
@@ -53,12 +59,13 @@ impl CuttingRun {
     }
 
     /// Begins a chain at rest.
-    pub(crate) fn begin(&mut self, limits: RunLimits, spindle: TurningSpindle) {
-        self.pace.begin(limits);
+    pub(crate) fn begin(&mut self, limits: RunLimits, rates: &MachineRates, spindle: TurningSpindle) {
+        self.pace.begin_sharing(limits, rates.cutting_max_mm_per_min / 60.0);
         self.ends_mm.clear();
         self.legs.iter_mut().for_each(VecDeque::clear);
-        self.corners.clear();
-        (self.end_mm, self.current, self.spindle, self.is_over) = (0.0, None, spindle, false);
+        self.corners.begin(limits);
+        (self.end_mm, self.only, self.is_rounded) = (0.0, None, true);
+        (self.current, self.spindle, self.is_over) = (None, spindle, false);
     }
 
     /// Whether legs can be added.
@@ -72,16 +79,17 @@ impl CuttingRun {
     }
 
     /// Takes up a leg, when there is room.
-    pub(crate) fn push(&mut self, leg: &Leg, order: Order, limit_mm_per_s: f64) {
+    pub(crate) fn push(&mut self, leg: &Leg, order: Order, limit: (f64, f64)) {
+        self.only = (self.end_mm == 0.0 && leg.arc.is_none()).then_some(*leg);
         self.end_mm += leg.length_mm;
         self.ends_mm.push_back(self.end_mm);
         self.legs.iter_mut().for_each(|legs| legs.push_back(*leg));
         self.corners.turn_into(leg);
         let has_room = self.corners.pour(&mut self.pace, false).is_ok() || self.corners.has_room();
         match order {
-            Order::Speed(speed) if has_room => self.corners.add(leg.length_mm, speed, limit_mm_per_s),
+            Order::Speed(speed) if has_room => self.corners.add(leg.length_mm, speed, limit),
             _ => {
-                self.current = Some((*leg, Stretches::new(order, limit_mm_per_s)));
+                self.current = Some((*leg, Stretches::new(order, limit)));
                 self.feed();
             }
         }
@@ -90,8 +98,28 @@ impl CuttingRun {
     /// No more legs come. The corners' averaging runs out, and after an exact stop the axes get into position.
     pub(crate) fn close(&mut self, mode: PathMode) {
         self.is_over = true;
+        self.go_straight();
         let in_position_s = if mode == PathMode::ExactStop { self.dynamics.in_position_s } else { 0.0 };
-        self.settling_s = 2.0 * self.dynamics.corner_s + in_position_s;
+        let rounding_s = if self.is_rounded { 2.0 * self.dynamics.corner_s } else { 0.0 };
+        self.settling_s = rounding_s + in_position_s;
+    }
+
+    /// A chain of one straight leg is no chain: nothing is kept for corners and bends, and none are rounded.
+    fn go_straight(&mut self) {
+        let Some(leg) = self.only.filter(|_| self.dynamics.acc_dec == AccDec::Before) else { return };
+        let Some([ordered, limit]) = self.corners.only_speeds().filter(|_| self.current.is_none()) else {
+            return;
+        };
+        let direction = std::array::from_fn(|axis| (leg.to[axis] - leg.from[axis]).abs() / leg.length_mm);
+        let mut limits = self.dynamics.straight(&direction);
+        limits.acceleration_mm_per_s2 = limits.acceleration_mm_per_s2.min(self.dynamics.cutting_mm_per_s2);
+        self.pace.begin(limits);
+        self.corners.begin(limits);
+        // An empty pace has room for one.
+        let _ = self.pace.push(leg.length_mm, ordered, limit);
+        self.pace.close();
+        self.pace.ease();
+        self.is_rounded = false;
     }
 
     /// Seconds from rest to rest, settling included, once all is planned.
@@ -106,7 +134,7 @@ impl CuttingRun {
                 return;
             }
             let (length, speed) = stretches.next(leg, &mut self.spindle);
-            self.corners.add(length, speed, stretches.limit_mm_per_s);
+            self.corners.add(length, speed, stretches.limit);
             if stretches.is_done(leg) {
                 self.current = None;
             }

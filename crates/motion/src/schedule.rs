@@ -199,7 +199,8 @@ impl Planning {
         if self.lag_s.is_some() {
             self.last = quickest(&leg);
         }
-        self.run.push(&leg, Order::Speed(cut.speed_mm_per_s), f64::INFINITY);
+        let share = self.dynamics.line_share(&leg, self.run.pace.limits(), cut.speed_mm_per_s);
+        self.run.push(&leg, Order::Speed(cut.speed_mm_per_s), (f64::INFINITY, share));
     }
 
     fn add(&mut self, command: Command, clock: &mut Clock, entries: &mut Entries) {
@@ -227,7 +228,7 @@ impl Planning {
             if timing.waited_s > 0.0 || spindle.ramp_rpm_per_s == 0.0 {
                 spindle.rpm = wanted_rpm;
             }
-            self.run.begin(self.dynamics.cutting(has_others), spindle);
+            self.run.begin(self.dynamics.cutting(has_others), clock.rates(), spindle);
             self.run.pace.preset(feedrate, false);
             self.passed_s = 0.0;
         }
@@ -240,7 +241,7 @@ impl Planning {
                 self.take(entries);
             }
             let leg = &self.legs[leg];
-            let limit = leg_limit(leg, clock, &self.dynamics, self.run.pace.limits());
+            let limit = leg_limit(leg, order, clock, &self.dynamics, self.run.pace.limits());
             if let Some(entry) = entries.list.back_mut() {
                 entry.legs += 1;
             }

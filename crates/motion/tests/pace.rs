@@ -2,11 +2,10 @@
 //! operator may come between at any time.
 
 use turnwright_dice::Dice;
-use turnwright_motion::planner::{Feedrate, Pace, RunLimits};
+use turnwright_motion::planner::{Feedrate, Pace, RunLimits, SHARE_MIN};
 
-/// xorshift64*, seeded: a failure names its case.
-/// Length (0 for a corner), ordered speed, limit.
-type Piece = (f64, f64, f64);
+/// Length (0 for a corner), ordered speed, limit, share of the acceleration.
+type Piece = (f64, f64, f64, f64);
 
 #[derive(Clone, Debug)]
 struct Case {
@@ -22,14 +21,17 @@ impl Case {
             acceleration_mm_per_s2: acceleration,
             jerk_mm_per_s3: acceleration / dice.size(0.004, 0.12),
         };
+        // Half of the paths have the same acceleration everywhere.
+        let is_shared = dice.one_in(2);
         let longest = if dice.roll().is_multiple_of(2) { 200.0 } else { 2.0 };
         let mut pieces = Vec::new();
         for _ in 0..1 + dice.roll() % 40 {
             let limit = dice.size(0.5, 400.0);
             let ordered = if dice.roll().is_multiple_of(3) { dice.size(0.5, 400.0) } else { limit };
-            pieces.push((dice.size(0.005, longest), ordered, limit));
+            let share = if is_shared && dice.one_in(2) { dice.size(SHARE_MIN, 1.5) } else { 1.0 };
+            pieces.push((dice.size(0.005, longest), ordered, limit, share));
             if dice.roll().is_multiple_of(2) {
-                pieces.push((0.0, f64::INFINITY, dice.size(0.1, 100.0)));
+                pieces.push((0.0, f64::INFINITY, dice.size(0.1, 100.0), 1.0));
             }
         }
         Self { limits, pieces }
@@ -39,13 +41,34 @@ impl Case {
         self.pieces.iter().map(|piece| piece.0).sum()
     }
 
+    /// A path that has not come in yet.
+    fn begun(&self, capacity: usize) -> Pace {
+        let mut pace = Pace::with_capacity(capacity, self.limits);
+        pace.begin_sharing(self.limits, 400.0);
+        pace
+    }
+
     fn pace(&self) -> Pace {
-        let mut pace = Pace::with_capacity(256, self.limits);
-        for (length, ordered, limit) in &self.pieces {
-            pace.push(*length, *ordered, *limit).expect("room");
+        let mut pace = self.begun(256);
+        for (length, ordered, limit, share) in &self.pieces {
+            pace.push_sharing(*length, *ordered, *limit, *share).expect("room");
         }
         pace.close();
         pace
+    }
+
+    /// The largest share of the acceleration that the stretches around a place have.
+    fn share(&self, at: f64) -> f64 {
+        let near = 1e-9 * (1.0 + self.length());
+        let mut start = 0.0;
+        let mut share = 0.0f64;
+        for (length, _, _, of_piece) in &self.pieces {
+            if *length > 0.0 && at >= start - near && at <= start + length + near {
+                share = share.max(*of_piece);
+            }
+            start += length;
+        }
+        share
     }
 
     /// The lowest cap at or beside a place.
@@ -53,7 +76,7 @@ impl Case {
         let near = 1e-12 * (1.0 + self.length());
         let mut start = 0.0;
         let mut lowest = f64::INFINITY;
-        for (length, ordered, limit) in &self.pieces {
+        for (length, ordered, limit, _) in &self.pieces {
             if at > start + near && at < start + length - near || *length == 0.0 && (at - start).abs() < near
             {
                 lowest = f64::min(lowest, (ordered * factor).min(*limit));
@@ -68,14 +91,19 @@ impl Case {
 struct Inspector {
     step_s: f64,
     last: [f64; 4],
+    /// Shares of the acceleration at these places.
+    shares: [f64; 4],
 }
 
 impl Inspector {
     fn new(step_s: f64, at: f64) -> Self {
-        Self { step_s, last: [at; 4] }
+        Self { step_s, last: [at; 4], shares: [1.5; 4] }
     }
 
-    fn look(&mut self, at: f64, limits: RunLimits, what: &dyn std::fmt::Debug) {
+    fn look(&mut self, at: f64, case: &Case, what: &dyn std::fmt::Debug) {
+        let limits = case.limits;
+        self.shares = [self.shares[1], self.shares[2], self.shares[3], case.share(at)];
+        let share = self.shares.iter().copied().fold(0.0, f64::max);
         self.last = [self.last[1], self.last[2], self.last[3], at];
         let [p0, p1, p2, p3] = self.last;
         let acceleration = (p3 - 2.0 * p2 + p1) / self.step_s.powi(2);
@@ -83,9 +111,9 @@ impl Inspector {
         // The places themselves are good to a few units in the last place.
         let noise = 16.0 * f64::EPSILON * (at.abs() + 1.0);
         assert!(p3 >= p2 - noise, "goes back from {p2} to {p3}: {what:?}");
-        let most = limits.acceleration_mm_per_s2 * (1.0 + 1e-7) + noise / self.step_s.powi(2);
+        let most = share * limits.acceleration_mm_per_s2 * (1.0 + 1e-7) + noise / self.step_s.powi(2);
         assert!(acceleration.abs() <= most, "acceleration {acceleration} at {at}: {what:?}");
-        let most = limits.jerk_mm_per_s3 * (1.0 + 1e-6) + noise / self.step_s.powi(3);
+        let most = share * limits.jerk_mm_per_s3 * (1.0 + 1e-6) + noise / self.step_s.powi(3);
         assert!(jerk.abs() <= most, "jerk {jerk} of {most} at {at}: {what:?}");
     }
 }
@@ -102,7 +130,7 @@ fn no_sample_passes_a_limit_and_the_end_is_exact() {
         let mut time = 0.0;
         while time < duration + 4.0 * step {
             let state = pace.at(time);
-            inspector.look(state.at_mm, case.limits, &(seed, time));
+            inspector.look(state.at_mm, &case, &(seed, time));
             let cap = case.cap(state.at_mm, 1.0);
             assert!(
                 state.speed_mm_per_s <= cap * (1.0 + 1e-6) + 1e-9,
@@ -120,15 +148,15 @@ fn no_sample_passes_a_limit_and_the_end_is_exact() {
 
 /// Feeds a path in bursts and plays it at the same time, with little room. Every place as bits.
 fn played(case: &Case, mut burst: impl FnMut() -> usize, step: f64, capacity: usize) -> Vec<u64> {
-    let mut pace = Pace::with_capacity(capacity, case.limits);
+    let mut pace = case.begun(capacity);
     let mut pieces = case.pieces.iter();
     let mut places = Vec::new();
     let mut next = pieces.next();
     let mut tick = 0u32;
     loop {
         for _ in 0..burst() {
-            let Some((length, ordered, limit)) = next else { break };
-            if pace.push(*length, *ordered, *limit).is_err() {
+            let Some((length, ordered, limit, share)) = next else { break };
+            if pace.push_sharing(*length, *ordered, *limit, *share).is_err() {
                 break;
             }
             next = pieces.next();
@@ -196,10 +224,10 @@ fn a_way_of_one_speed_has_the_same_bits_whatever_the_chunks() {
         let whole = planned(&[(way, speed)]);
         assert_eq!(whole, planned(&[(way, speed), (0.0, 1e9)]), "{limits:?} {way} {speed}");
         // Chunk by chunk.
-        let case = Case { limits, pieces: vec![(way, speed, speed)] };
+        let case = Case { limits, pieces: vec![(way, speed, speed, 1.0)] };
         let step = f64::from_bits(whole.0) / 100.0;
         let at_once = played(&case, || 1, step, 8);
-        let parts = Case { limits, pieces: vec![(way / 2.0, speed, speed); 2] };
+        let parts = Case { limits, pieces: vec![(way / 2.0, speed, speed, 1.0); 2] };
         assert!(at_once == played(&parts, || 1, step, 8), "{limits:?} {way} {speed}");
     }
 }
@@ -210,11 +238,11 @@ fn little_room_is_slower_but_safe() {
         let mut dice = Dice::new(seed + 1);
         let mut case = Case::random(seed);
         // Braking takes many more pieces than there is room for.
-        case.pieces = (0..400).map(|_| (0.02, 100.0 + dice.part(), 300.0)).collect();
+        case.pieces = (0..400).map(|_| (0.02, 100.0 + dice.part(), 300.0, 1.0)).collect();
         let places = played(&case, || usize::MAX, 1e-3, 16);
         let mut inspector = Inspector::new(1e-3, 0.0);
         for place in &places {
-            inspector.look(f64::from_bits(*place), case.limits, &seed);
+            inspector.look(f64::from_bits(*place), &case, &seed);
         }
         assert!((f64::from_bits(places[places.len() - 1]) - case.length()).abs() < 1e-3, "{seed}");
     }
@@ -246,11 +274,12 @@ fn the_operator_may_come_between_at_any_time() {
                 pace.plan();
             }
             let state = pace.at(time);
-            inspector.look(state.at_mm, case.limits, &(seed, tick, time));
+            inspector.look(state.at_mm, &case, &(seed, tick, time));
             let cap = case.cap(state.at_mm, slowest_factor_allowed);
             assert!(state.speed_mm_per_s <= cap * (1.0 + 1e-6) + 1e-9, "{seed} {tick} {state:?} {cap}");
-            // Half a second of braking and averaging, then a hold has stopped it for good.
-            let stopping_s = 400.0 / case.limits.acceleration_mm_per_s2 + 2.0 * case.limits.window_s();
+            // Braking with the smallest share and averaging, then a hold has stopped it for good.
+            let stopping_s =
+                400.0 / (SHARE_MIN * case.limits.acceleration_mm_per_s2) + 2.0 * case.limits.window_s();
             if held && f64::from(tick - since) * step > stopping_s {
                 assert!(state.speed_mm_per_s.abs() < 1e-6, "{seed} {tick} {state:?}");
                 assert!(pace.is_resting(time), "{seed}");
@@ -269,10 +298,10 @@ fn the_operator_may_come_between_at_any_time() {
 fn an_override_at_the_first_instant_holds_from_there() {
     for seed in 0..100 {
         let case = Case::random(seed);
-        let mut preset = Pace::with_capacity(256, case.limits);
+        let mut preset = case.begun(256);
         preset.preset(Feedrate::Override(0.5), false);
-        case.pieces.iter().for_each(|(length, ordered, limit)| {
-            preset.push(*length, *ordered, *limit).expect("room");
+        case.pieces.iter().for_each(|(length, ordered, limit, share)| {
+            preset.push_sharing(*length, *ordered, *limit, *share).expect("room");
         });
         preset.close();
         preset.plan();
@@ -300,17 +329,17 @@ fn a_higher_override_is_never_later() {
         let case = Case::random(seed);
         let mut last = f64::INFINITY;
         for percent in [10, 50, 80, 100, 120, 200] {
-            let mut pace = Pace::with_capacity(256, case.limits);
+            let mut pace = case.begun(256);
             pace.preset(Feedrate::Override(f64::from(percent) / 100.0), false);
-            for (length, ordered, limit) in &case.pieces {
-                pace.push(*length, *ordered, *limit).expect("room");
+            for (length, ordered, limit, share) in &case.pieces {
+                pace.push_sharing(*length, *ordered, *limit, *share).expect("room");
             }
             pace.close();
             pace.plan();
             let duration = pace.duration_s().expect("planned");
             // Caps widen with their speed: near the start of a slow stretch, or behind a corner that a slower path
-            // would not have noticed, a percent may be lost.
-            assert!(duration <= last * 1.01, "{seed} {percent} {duration} after {last}");
+            // would not have noticed, two percent may be lost.
+            assert!(duration <= last * 1.02, "{seed} {percent} {duration} after {last}");
             last = duration;
         }
     }
@@ -345,6 +374,7 @@ fn a_way_from_rest_to_rest_is_known_in_closed_form() {
         let mut pace = Pace::with_capacity(4, limits);
         pace.push(way, speed, 1e9).expect("room");
         pace.close();
+        pace.ease();
         pace.plan();
         let (closed, planned) = (limits.rest_to_rest_s(way, speed), pace.duration_s().expect("planned"));
         assert!((closed - planned).abs() < 1e-8 * closed, "{limits:?} {way} {speed}: {closed} {planned}");

@@ -72,24 +72,27 @@ fn rapids_speed_up_and_slow_down() {
     // 85.440/284.800 + 284.800/3204.0 + 0.02 = 0.3 + 0.088 889 + 0.02: the same, as Z sets the pace.
     let straight = timed(at(50.0, 80.0), rates(), &[rapid(20.0, 0.0, RapidPath::Straight)]);
     near(straight[0].seconds, 0.428_889);
-    // 0.5 mm: v² + 3000·0.02·v = 3000·0.5 → v = 18.990 mm/s; 0.5/18.990 + 18.990/3000 + 0.02 = 0.052 660, + 0.02.
+    // 0.5 mm: only 150 000 mm/s³ count, (32·0.5/150 000)^⅓ = 0.047 425 s; + 0.02.
     let short = timed(at(50.0, 0.5), rates(), &[rapid(50.0, 0.0, RapidPath::EachAxis)]);
-    near(short[0].seconds, 0.072_660);
+    near(short[0].seconds, 0.067_425);
 }
 
 #[test]
 fn a_cut_from_rest_to_rest() {
-    // A quarter of 3000 mm/s², three tenths of 150 000 mm/s³: 750 and 45 000, so 1/60 s for the acceleration.
-    // 10 mm at 100 mm/min: 6 s + 1.666 667/750 + 0.016 667, and twice the 0.01 s of corners until the axes stand.
+    // By itself it has all that the axis has: 150 000 mm/s³ for 1.667 mm/s, up and down again, twice √(1.667/150 000).
     let timings = timed(at(10.0, 0.0), rates(), &[cut(10.0, -10.0, 100.0)]);
-    near(timings[0].seconds, 6.0 + 0.002_222 + 0.016_667 + 0.02);
+    near(timings[0].seconds, 6.0 + 2.0 * 0.003_333);
+    // In a chain 0.78 of 3000 mm/s² and of 150 000 mm/s³: 2340 and 117 000, so 0.02 s for the acceleration.
+    // 10 mm at 100 mm/min: 6 s + 1.666 667/2340 + 0.02, and twice the 0.01 s of corners until the axes stand.
+    let chain = timed(at(10.0, 0.0), rates(), &[cut(10.0, -4.0, 100.0), cut(10.0, -10.0, 100.0)]);
+    near(seconds(&chain), 6.0 + 0.000_712 + 0.02 + 0.02);
     assert_eq!(timings[0].kind, Kind::Cutting);
 }
 
 #[test]
 fn cuts_in_one_line_take_as_long_as_one() {
     let pieces: Vec<_> = (1..=3000).map(|piece| cut(10.0, -0.01 * f64::from(piece), 1000.0)).collect();
-    let whole = timed(at(10.0, 0.0), rates(), &[cut(10.0, -30.0, 1000.0)]);
+    let whole = timed(at(10.0, 0.0), rates(), &[cut(10.0, -20.0, 1000.0), cut(10.0, -30.0, 1000.0)]);
     let parts = timed(at(10.0, 0.0), rates(), &pieces);
     near(seconds(&parts), seconds(&whole));
     // In the middle each takes its share.
@@ -99,29 +102,34 @@ fn cuts_in_one_line_take_as_long_as_one() {
 #[test]
 fn a_corner_costs_time_and_an_exact_stop_more() {
     let square = [cut(10.0, -20.0, 3000.0), cut(20.0, -20.0, 3000.0)];
-    let whole = seconds(&timed(at(10.0, 0.0), rates(), &[cut(10.0, -30.0, 3000.0)]));
+    let straight = |feed: f64| {
+        let halves = [cut(10.0, -20.0, feed), cut(10.0, -30.0, feed)];
+        seconds(&timed(at(10.0, 0.0), rates(), &halves))
+    };
+    let whole = straight(3000.0);
     let corner = seconds(&timed(at(10.0, 0.0), rates(), &square));
     let mut stops = vec![Action::PathMode(PathMode::ExactStop)];
     stops.extend(square);
     let stopped = seconds(&timed(at(10.0, 0.0), rates(), &stops));
     assert!(whole < corner && corner < stopped, "{whole} {corner} {stopped}");
-    // Each stop by itself: 20 and 10 mm at 50 mm/s, 50/750 + 1/60 to get there, 0.04 s to settle.
-    near(stopped, 30.0 / 50.0 + 2.0 * (50.0 / 750.0 + 1.0 / 60.0 + 0.04));
+    // Each stop by itself: 20 and 10 mm at 50 mm/s, twice √(50/150 000) to get there, 0.02 s into position.
+    near(stopped, 30.0 / 50.0 + 2.0 * (2.0 * (50.0f64 / 150_000.0).sqrt() + 0.02));
     // Slow cuts pass their corners without a change of speed.
     let slow = [cut(10.0, -20.0, 120.0), cut(20.0, -20.0, 120.0)];
-    let one = seconds(&timed(at(10.0, 0.0), rates(), &[cut(10.0, -30.0, 120.0)]));
-    near(seconds(&timed(at(10.0, 0.0), rates(), &slow)), one);
+    near(seconds(&timed(at(10.0, 0.0), rates(), &slow)), straight(120.0));
 }
 
 #[test]
 fn a_message_between_cuts_stops_nothing_and_a_dwell_does() {
     let cuts = |between: Action| [cut(10.0, -5.0, 1000.0), between, cut(10.0, -10.0, 1000.0)];
-    let whole = seconds(&timed(at(10.0, 0.0), rates(), &[cut(10.0, -10.0, 1000.0)]));
+    let halves = [cut(10.0, -5.0, 1000.0), cut(10.0, -10.0, 1000.0)];
+    let whole = seconds(&timed(at(10.0, 0.0), rates(), &halves));
     near(seconds(&timed(at(10.0, 0.0), rates(), &cuts(Action::Message("turn".into())))), whole);
     let dwelt = timed(at(10.0, 0.0), rates(), &cuts(Action::Dwell(Dwell::Time(Seconds(1.0)))));
     assert_eq!(dwelt[1].seconds, 1.0);
-    // 16.667 mm/s are reached in 16.667/750 + 1/60 s; 0.02 s to settle.
-    near(seconds(&dwelt) - 1.0 - whole, 16.666_667 / 750.0 + 1.0 / 60.0 + 0.02);
+    // Each half by itself gets to 16.667 mm/s and back in twice √(16.667/150 000) s; the chain took longer.
+    let by_itself = 2.0 * (16.666_667f64 / 150_000.0).sqrt();
+    near(seconds(&dwelt) - 1.0 - 10.0 / 16.666_667, 2.0 * by_itself);
 }
 
 fn turning(m_per_min: u32, rpm_max: u32) -> Action {

@@ -1,12 +1,15 @@
 //! Speed caps along the path, and how far each one reaches.
 //!
-//! In: [`Cap`]s, one behind the other; a cap of no length is a corner. Out: [`Span`]s of constant speed, each cap
-//! widened on both sides by its speed × half the averaging window.
+//! In: [`Cap`]s, one behind the other; a cap of no length is a corner. Out: [`Span`]s of constant speed and
+//! acceleration, each cap widened on both sides: its speed by the way of half the averaging window at that speed, its
+//! acceleration by that of a whole one.
 //!
 //! Why: the averaging of [`super::phases`] mixes what lies half a window before and behind. A profile that keeps a
 //! speed on the widened stretch has, averaged, no more than that speed on the stretch itself. Proof: were the mean
 //! speed above V, the window would cover more path than V·T; it would reach beyond the widened stretch on one side
-//! only, and the mean place would lie beyond the stretch.
+//! only, and the mean place would lie beyond the stretch. The mean acceleration on a stretch is one of its window, so
+//! all of that has to lie where the acceleration is no more; it leaves the stretch no faster than V and with no more
+//! than its acceleration A, and so gets no further than V·T + A·T²/2.
 
 use super::{least, most};
 
@@ -34,7 +37,16 @@ pub struct Cap {
     pub(super) feedrate: Feedrate,
     /// What its width is measured with: that of the profile which the tool already follows.
     pub(super) width_feedrate: Feedrate,
+    /// How much acceleration it has along the path, in that of [`super::RunLimits`]: less where it bends, more where
+    /// several axes share the way.
+    pub(super) share: f64,
 }
+
+/// No stretch has a smaller share of the acceleration.
+pub const SHARE_MIN: f64 = 0.2;
+
+/// No stretch has a larger one.
+pub const SHARE_MAX: f64 = 2.0;
 
 /// The slowest that a cap may be: below it a path would take for ever.
 pub const SPEED_MIN_MM_PER_S: f64 = 1e-6;
@@ -52,64 +64,110 @@ impl Cap {
     }
 
     /// Speed and width as the operator had them when it came.
-    pub(super) fn wide_span(&self) -> WideSpan {
-        let span = Span { start: self.start_mm, end: self.end_mm, speed: self.speed(self.feedrate) };
-        WideSpan { span, width_speed: self.speed(self.width_feedrate) }
+    fn wide_speed(&self, half_window_s: f64) -> WideLevel {
+        let level = Level { start: self.start_mm, end: self.end_mm, value: self.speed(self.feedrate) };
+        WideLevel { level, reach: self.speed(self.width_feedrate) * half_window_s }
+    }
+
+    /// Share and its width.
+    fn wide_share(&self, averaging: Averaging) -> WideLevel {
+        let level = Level { start: self.start_mm, end: self.end_mm, value: self.share };
+        WideLevel { level, reach: averaging.reach_mm(self.speed(self.width_feedrate), self.share) }
     }
 }
 
-/// A span to be widened, and the speed whose way in half a window is the width.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct WideSpan {
-    pub(super) span: Span,
-    pub(super) width_speed: f64,
-}
-
-/// A stretch with one highest speed.
+/// A stretch with one highest speed and one acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Span {
     pub(super) start: f64,
     pub(super) end: f64,
     pub(super) speed: f64,
+    /// How much the square of the speed may change on a millimetre: twice the acceleration.
+    pub(super) growth: f64,
 }
 
-impl Span {
+/// A stretch with one highest value: of the speed, or of the share of the acceleration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Level {
+    start: f64,
+    end: f64,
+    value: f64,
+}
+
+impl Level {
     /// The same stretch seen from the other end.
     fn mirrored(self) -> Self {
-        Self { start: -self.end, end: -self.start, speed: self.speed }
+        Self { start: -self.end, end: -self.start, value: self.value }
     }
+}
+
+/// What widens caps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Averaging {
+    pub(super) window_s: f64,
+    /// Of a share of 1.
+    pub(super) acceleration: f64,
+}
+
+impl Averaging {
+    /// How far a tool gets in one window from a stretch that it leaves at a speed.
+    pub(super) fn reach_mm(self, speed: f64, share: f64) -> f64 {
+        self.window_s * (speed + share * self.acceleration * self.window_s / 2.0)
+    }
+}
+
+/// A level to be widened, and how far.
+#[derive(Clone, Copy, Debug)]
+struct WideLevel {
+    level: Level,
+    reach: f64,
 }
 
 /// Room for widening, used again and again.
 #[derive(Clone, Debug)]
 pub(super) struct Room {
-    wide: Vec<WideSpan>,
-    forward: Vec<Span>,
-    backward: Vec<Span>,
+    wide: Vec<WideLevel>,
+    forward: Vec<Level>,
+    backward: Vec<Level>,
+    speeds: Vec<Level>,
+    shares: Vec<Level>,
 }
 
+/// Spans of one value that a cap becomes at most: it is cut in two by those that reach on, on each of two passes.
+const LEVELS_PER_CAP: usize = 4;
+
+/// Spans that a cap becomes at most.
+pub(super) const SPANS_PER_CAP: usize = 2 * LEVELS_PER_CAP;
+
 impl Room {
-    /// For so many caps: each is cut in two at most by those that reach on.
+    /// For so many caps.
     pub(super) fn for_caps(caps: usize) -> Self {
-        let spans = || Vec::with_capacity(2 * caps + 2);
-        Self { wide: Vec::with_capacity(caps), forward: spans(), backward: spans() }
+        let one_way = || Vec::with_capacity(LEVELS_PER_CAP / 2 * caps + 2);
+        let both_ways = || Vec::with_capacity(LEVELS_PER_CAP * caps + 4);
+        Self {
+            wide: Vec::with_capacity(caps),
+            forward: one_way(),
+            backward: one_way(),
+            speeds: both_ways(),
+            shares: both_ways(),
+        }
     }
 }
 
-/// The spans of caps. A corner that is no slower than a stretch beside it changes nothing: it is left out, whoever
+/// The speeds of caps. A corner that is no slower than a stretch beside it changes nothing: it is left out, whoever
 /// comes between later.
-fn collect<'a>(caps: impl Iterator<Item = &'a Cap>, out: &mut Vec<WideSpan>) {
+fn collect_speeds<'a>(caps: impl Iterator<Item = &'a Cap>, half_window_s: f64, out: &mut Vec<WideLevel>) {
     out.clear();
-    let mut corner: Option<WideSpan> = None;
+    let mut corner: Option<WideLevel> = None;
     let mut before = f64::INFINITY;
     for cap in caps {
-        let wide = cap.wide_span();
+        let wide = cap.wide_speed(half_window_s);
         let is_corner = cap.start_mm == cap.end_mm;
-        out.extend(corner.take().filter(|corner| is_corner || corner.span.speed < wide.span.speed));
+        out.extend(corner.take().filter(|corner| is_corner || corner.level.value < wide.level.value));
         if !is_corner {
-            before = wide.span.speed;
+            before = wide.level.value;
             out.push(wide);
-        } else if wide.span.speed < before {
+        } else if wide.level.value < before {
             corner = Some(wide);
         }
     }
@@ -118,30 +176,53 @@ fn collect<'a>(caps: impl Iterator<Item = &'a Cap>, out: &mut Vec<WideSpan>) {
 
 /// Widens caps to both sides, into `out`.
 pub(super) fn widen<'a>(
-    caps: impl Iterator<Item = &'a Cap>,
-    half_window_s: f64,
+    caps: impl Iterator<Item = &'a Cap> + Clone,
+    averaging: Averaging,
     room: &mut Room,
     out: &mut Vec<Span>,
 ) {
-    collect(caps, &mut room.wide);
-    let wide = room.wide.iter();
-    widen_forward(wide.clone().copied(), half_window_s, &mut room.forward);
-    widen_forward(
-        wide.rev().map(|wide| WideSpan { span: wide.span.mirrored(), ..*wide }),
-        half_window_s,
-        &mut room.backward,
-    );
+    let Room { wide, forward, backward, speeds, shares } = room;
+    let growth = 2.0 * averaging.acceleration;
+    let is_alike = caps.clone().all(|cap| cap.share == 1.0);
+    collect_speeds(caps.clone(), averaging.window_s / 2.0, wide);
+    widen_both(wide, forward, backward, speeds);
     out.clear();
-    let mut backward = room.backward.iter().rev().map(|span| span.mirrored());
-    let Some(mut other) = backward.next() else { return };
-    for span in &room.forward {
-        let mut at = span.start;
-        while at < span.end {
-            let to = least(span.end, other.end);
-            append(out, Span { start: at, end: to, speed: least(span.speed, other.speed) });
+    if is_alike {
+        let span = |level: &Level| Span { start: level.start, end: level.end, speed: level.value, growth };
+        out.extend(speeds.iter().map(span));
+        return;
+    }
+    wide.clear();
+    wide.extend(caps.filter(|cap| cap.start_mm < cap.end_mm).map(|cap| cap.wide_share(averaging)));
+    widen_both(wide, forward, backward, shares);
+    overlay(speeds, shares.iter().copied(), |start, end, speed, share| {
+        out.push(Span { start, end, speed, growth: growth * share });
+    });
+}
+
+/// Widens levels to both sides.
+fn widen_both(wide: &[WideLevel], forward: &mut Vec<Level>, backward: &mut Vec<Level>, out: &mut Vec<Level>) {
+    widen_forward(wide.iter().copied(), forward);
+    let mirrored = |wide: &WideLevel| WideLevel { level: wide.level.mirrored(), ..*wide };
+    widen_forward(wide.iter().rev().map(mirrored), backward);
+    out.clear();
+    overlay(forward, backward.iter().rev().map(|level| level.mirrored()), |start, end, one, other| {
+        append(out, Level { start, end, value: least(one, other) });
+    });
+}
+
+/// The stretches on which both of two rows have one value.
+fn overlay(ones: &[Level], others: impl Iterator<Item = Level>, mut each: impl FnMut(f64, f64, f64, f64)) {
+    let mut others = others;
+    let Some(mut other) = others.next() else { return };
+    for one in ones {
+        let mut at = one.start;
+        while at < one.end {
+            let to = least(one.end, other.end);
+            each(at, to, one.value, other.value);
             at = to;
             if other.end <= at {
-                match backward.next() {
+                match others.next() {
                     Some(next) => other = next,
                     None => return,
                 }
@@ -150,42 +231,42 @@ pub(super) fn widen<'a>(
     }
 }
 
-fn widen_forward(spans: impl Iterator<Item = WideSpan>, half_window_s: f64, out: &mut Vec<Span>) {
+fn widen_forward(levels: impl Iterator<Item = WideLevel>, out: &mut Vec<Level>) {
     out.clear();
     let mut carries = Carries::default();
-    for WideSpan { span, width_speed } in spans {
-        let mut at = span.start;
-        while at < span.end {
-            let (to, speed) = match carries.lowest(at) {
-                Some(carry) if carry.speed < span.speed => (least(carry.until, span.end), carry.speed),
-                _ => (span.end, span.speed),
+    for WideLevel { level, reach } in levels {
+        let mut at = level.start;
+        while at < level.end {
+            let (to, value) = match carries.lowest(at) {
+                Some(carry) if carry.value < level.value => (least(carry.until, level.end), carry.value),
+                _ => (level.end, level.value),
             };
-            append(out, Span { start: at, end: to, speed });
+            append(out, Level { start: at, end: to, value });
             at = to;
         }
-        carries.add(Carry { speed: span.speed, until: span.end + width_speed * half_window_s });
+        carries.add(Carry { value: level.value, until: level.end + reach });
     }
 }
 
-/// Adds a span, or lengthens the last one when the speed is the same.
-fn append(out: &mut Vec<Span>, span: Span) {
+/// Adds a level, or lengthens the last one when the value is the same.
+fn append(out: &mut Vec<Level>, level: Level) {
     match out.last_mut() {
-        Some(last) if last.speed == span.speed => last.end = span.end,
-        _ => out.push(span),
+        Some(last) if last.value == level.value => last.end = level.end,
+        _ => out.push(level),
     }
 }
 
 /// A cap that reaches on.
 #[derive(Clone, Copy, Debug, Default)]
 struct Carry {
-    speed: f64,
+    value: f64,
     until: f64,
 }
 
-/// Caps kept at once. When more would reach on, the two fastest become one that is slow and long enough for both.
+/// Caps kept at once. When more would reach on, the two highest become one that is low and long enough for both.
 const CARRIES_MAX: usize = 32;
 
-/// The caps that reach on, slowest and shortest first: one that is neither slower nor longer than another is not kept.
+/// The caps that reach on, lowest and shortest first: one that is neither lower nor longer than another is not kept.
 #[derive(Clone, Copy, Debug, Default)]
 struct Carries {
     list: [Carry; CARRIES_MAX],
@@ -193,7 +274,7 @@ struct Carries {
 }
 
 impl Carries {
-    /// The slowest that still reaches on at a place.
+    /// The lowest that still reaches on at a place.
     fn lowest(&mut self, at: f64) -> Option<Carry> {
         let over = self.list[..self.count].iter().take_while(|carry| carry.until <= at).count();
         self.list.copy_within(over..self.count, 0);
@@ -203,28 +284,28 @@ impl Carries {
 
     fn add(&mut self, new: Carry) {
         let kept = &self.list[..self.count];
-        let slower = kept.iter().take_while(|carry| carry.speed < new.speed).count();
-        if slower > 0 && kept[slower - 1].until >= new.until {
+        let lower = kept.iter().take_while(|carry| carry.value < new.value).count();
+        if lower > 0 && kept[lower - 1].until >= new.until {
             return;
         }
-        let covered = kept[slower..].iter().take_while(|carry| carry.until <= new.until).count();
-        let rest = slower + covered..self.count;
+        let covered = kept[lower..].iter().take_while(|carry| carry.until <= new.until).count();
+        let rest = lower + covered..self.count;
         if covered > 0 {
-            self.list[slower] = new;
-            self.list.copy_within(rest.clone(), slower + 1);
-            self.count = slower + 1 + rest.len();
+            self.list[lower] = new;
+            self.list.copy_within(rest.clone(), lower + 1);
+            self.count = lower + 1 + rest.len();
             return;
         }
         if self.count == CARRIES_MAX {
             self.list[CARRIES_MAX - 2].until = self.list[CARRIES_MAX - 1].until.max(new.until);
             self.count -= 1;
-            if slower >= self.count {
-                self.list[self.count - 1].speed = self.list[self.count - 1].speed.min(new.speed);
+            if lower >= self.count {
+                self.list[self.count - 1].value = self.list[self.count - 1].value.min(new.value);
                 return;
             }
         }
-        self.list.copy_within(slower..self.count, slower + 1);
-        self.list[slower] = new;
+        self.list.copy_within(lower..self.count, lower + 1);
+        self.list[lower] = new;
         self.count += 1;
     }
 }
@@ -244,9 +325,11 @@ mod tests {
                 limit_mm_per_s,
                 feedrate: Feedrate::Override(1.0),
                 width_feedrate: Feedrate::Override(1.0),
+                share: 1.0,
             })
             .collect();
-        widen(caps.iter(), half_window_s, &mut room, &mut out);
+        let averaging = Averaging { window_s: 2.0 * half_window_s, acceleration: 1.0 };
+        widen(caps.iter(), averaging, &mut room, &mut out);
         out.iter().map(|span| (span.start, span.end, span.speed)).collect()
     }
 

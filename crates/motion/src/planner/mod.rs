@@ -16,7 +16,7 @@ mod peaks;
 mod phases;
 mod reach;
 
-pub use caps::{Cap, Feedrate, SPEED_MIN_MM_PER_S};
+pub use caps::{Cap, Feedrate, SHARE_MAX, SHARE_MIN, SPEED_MIN_MM_PER_S};
 pub use pace::{Full, Pace, RunLimits};
 pub use phases::PathState;
 pub(crate) use phases::{Phase, Phases};

@@ -8,7 +8,9 @@
 
 use std::collections::VecDeque;
 
-use super::caps::{Cap, Feedrate, Room, SPEED_MIN_MM_PER_S, Span, widen};
+use super::caps::{
+    Averaging, Cap, Feedrate, Room, SHARE_MAX, SHARE_MIN, SPANS_PER_CAP, SPEED_MIN_MM_PER_S, Span, widen,
+};
 use super::peaks::{flatten, hill};
 use super::phases::{PathState, Phase, Phases};
 use super::reach::{Knot, backward, brake, forward, is_too_fast};
@@ -28,6 +30,21 @@ impl RunLimits {
         self.acceleration_mm_per_s2 / self.jerk_mm_per_s3
     }
 
+    /// Way to rest with a share of the acceleration, and of all windows on it.
+    fn stopping_mm(self, speed_mm_per_s: f64, share: f64) -> f64 {
+        speed_mm_per_s * speed_mm_per_s / (2.0 * share * self.acceleration_mm_per_s2)
+            + 2.0 * speed_mm_per_s * self.window_s()
+    }
+
+    pub(super) fn averaging(self) -> Averaging {
+        Averaging { window_s: self.window_s(), acceleration: self.acceleration_mm_per_s2 }
+    }
+
+    /// How far a tool gets beyond a stretch that it leaves at a speed while the averaging still sees that stretch, mm.
+    pub(crate) fn reach_mm(self, speed_mm_per_s: f64) -> f64 {
+        self.averaging().reach_mm(speed_mm_per_s, 1.0)
+    }
+
     /// Seconds from rest to a speed.
     pub fn ramp_s(self, speed_mm_per_s: f64) -> f64 {
         speed_mm_per_s / self.acceleration_mm_per_s2 + self.window_s()
@@ -38,12 +55,26 @@ impl RunLimits {
         speed_mm_per_s * self.ramp_s(speed_mm_per_s) / 2.0
     }
 
-    /// Seconds for a way from rest to rest.
+    /// Those with which a way from rest to rest takes the least time. On a way so short or so slow that the acceleration
+    /// would have to go back before it is there, a lower one that is there sooner wins.
+    ///
+    /// With the jerk J and the window T, the acceleration is up and down again while J·T² is gained. From there to rest
+    /// again takes 2·J·T³ when the top lasts no longer than it must. So T is the largest for which neither is too much.
+    #[must_use]
+    pub fn eased(self, way_mm: f64, speed_mm_per_s: f64) -> Self {
+        let jerk = self.jerk_mm_per_s3;
+        let window_s =
+            self.window_s().min((speed_mm_per_s / jerk).sqrt()).min(libm::cbrt(way_mm / (2.0 * jerk)));
+        Self { acceleration_mm_per_s2: self.acceleration_mm_per_s2.min(jerk * window_s), ..self }
+    }
+
+    /// Seconds for a way from rest to rest: the least that its limits allow.
     pub fn rest_to_rest_s(self, way_mm: f64, speed_mm_per_s: f64) -> f64 {
         if way_mm <= 0.0 {
             return 0.0;
         }
-        let (acceleration, window) = (self.acceleration_mm_per_s2, self.window_s());
+        let eased = self.eased(way_mm, speed_mm_per_s);
+        let (acceleration, window) = (eased.acceleration_mm_per_s2, eased.window_s());
         // The top lasts for a window at least: way = v²/a + v·window.
         let half = acceleration * window / 2.0;
         let sum = acceleration * way_mm;
@@ -92,6 +123,8 @@ impl Front {
 #[derive(Clone, Debug)]
 pub struct Pace {
     limits: RunLimits,
+    /// No stretch that is to come reaches back further than this.
+    reach_max_mm: f64,
     capacity: usize,
     caps: VecDeque<Cap>,
     end_mm: f64,
@@ -118,8 +151,10 @@ impl Pace {
     /// A path of no length, with room for so many caps at once.
     pub fn with_capacity(capacity: usize, limits: RunLimits) -> Self {
         let caps = capacity + SPLITS_MAX;
+        let spans = SPANS_PER_CAP * caps + 8;
         Self {
             limits,
+            reach_max_mm: 0.0,
             capacity,
             caps: VecDeque::with_capacity(caps),
             end_mm: 0.0,
@@ -128,18 +163,26 @@ impl Pace {
             is_held: false,
             front: Front::REST,
             phases: Phases::with_capacity(PHASES_PER_CAP * caps + 16),
-            // A cap becomes two spans at most on each of two passes, a span three knots.
-            spans: Vec::with_capacity(4 * caps + 8),
+            // A span becomes three knots at most, and one that is lowered two.
+            spans: Vec::with_capacity(spans),
             room: Room::for_caps(caps),
-            bounds: Vec::with_capacity(4 * caps + 9),
-            knots: Vec::with_capacity(12 * caps + 32),
-            profile: Vec::with_capacity(24 * caps + 64),
+            bounds: Vec::with_capacity(spans + 1),
+            knots: Vec::with_capacity(3 * spans + 8),
+            profile: Vec::with_capacity(6 * spans + 16),
         }
     }
 
     /// Begins another path at rest; override and hold stay.
     pub fn begin(&mut self, limits: RunLimits) {
+        self.begin_sharing(limits, 0.0);
+    }
+
+    /// Begins another path at rest, with stretches that have other accelerations and are passed at no more than
+    /// `speed_max_mm_per_s`; 0 without such.
+    pub fn begin_sharing(&mut self, limits: RunLimits, speed_max_mm_per_s: f64) {
         self.limits = limits;
+        let reach_mm = limits.averaging().reach_mm(speed_max_mm_per_s, SHARE_MAX);
+        self.reach_max_mm = if speed_max_mm_per_s > 0.0 { reach_mm } else { 0.0 };
         self.caps.clear();
         (self.end_mm, self.is_closed) = (0.0, false);
         self.front = Front::REST;
@@ -161,6 +204,20 @@ impl Pace {
     /// # Errors
     /// When there is no room.
     pub fn push(&mut self, length_mm: f64, ordered_mm_per_s: f64, limit_mm_per_s: f64) -> Result<(), Full> {
+        self.push_sharing(length_mm, ordered_mm_per_s, limit_mm_per_s, 1.0)
+    }
+
+    /// Adds a stretch that has another acceleration: its share, from [`SHARE_MIN`] to [`SHARE_MAX`], times that of the limits.
+    ///
+    /// # Errors
+    /// When there is no room.
+    pub fn push_sharing(
+        &mut self,
+        length_mm: f64,
+        ordered_mm_per_s: f64,
+        limit_mm_per_s: f64,
+        share: f64,
+    ) -> Result<(), Full> {
         let end_mm = self.end_mm + length_mm;
         // Stretches with the same speed are one: look-ahead then costs nothing.
         if let Some(last) = self.caps.back_mut()
@@ -168,6 +225,7 @@ impl Pace {
             && last.limit_mm_per_s == limit_mm_per_s
             && last.feedrate == self.feedrate
             && last.width_feedrate == self.feedrate
+            && last.share == share
             && last.start_mm < last.end_mm
         {
             last.end_mm = end_mm;
@@ -182,6 +240,7 @@ impl Pace {
                 limit_mm_per_s,
                 feedrate: self.feedrate,
                 width_feedrate: self.feedrate,
+                share,
             });
         }
         self.end_mm = end_mm;
@@ -193,6 +252,15 @@ impl Pace {
         self.is_closed = true;
     }
 
+    /// Of a complete path of one speed that is not planned yet, takes the limits that are fastest on it.
+    pub fn ease(&mut self) {
+        if let (Some(cap), 1, true) =
+            (self.caps.front(), self.caps.len(), self.is_closed && self.phases.is_empty())
+        {
+            self.limits = self.limits.eased(self.end_mm, cap.speed(cap.feedrate));
+        }
+    }
+
     /// Whether there is room for `count` more caps.
     pub fn has_room(&self, count: usize) -> bool {
         self.caps.len() + count <= self.capacity
@@ -200,8 +268,8 @@ impl Pace {
 
     /// Path that must be known ahead for the plan to be final, for speeds up to `speed_mm_per_s`.
     pub fn foresight_mm(&self, speed_mm_per_s: f64) -> f64 {
-        speed_mm_per_s * speed_mm_per_s / (2.0 * self.limits.acceleration_mm_per_s2)
-            + 2.0 * speed_mm_per_s * self.limits.window_s()
+        let share_min = if self.reach_max_mm > 0.0 { SHARE_MIN } else { 1.0 };
+        self.limits.stopping_mm(speed_mm_per_s, share_min) + self.reach_max_mm
     }
 
     /// The time up to which place and speed are final.
@@ -244,9 +312,13 @@ impl Pace {
     }
 
     fn forget_caps(&mut self, passed_mm: f64) {
-        let half = self.limits.window_s() / 2.0;
-        while self.caps.len() > 1
-            && self.caps.front().is_some_and(|cap| cap.end_mm + cap.limit_mm_per_s * half < passed_mm)
+        // Without other shares only its speed reaches on, half as far.
+        let (averaging, half) = (self.limits.averaging(), self.limits.window_s() / 2.0);
+        let reach = |cap: &Cap| match cap.share {
+            _ if self.reach_max_mm == 0.0 => cap.limit_mm_per_s * half,
+            share => averaging.reach_mm(cap.limit_mm_per_s, share),
+        };
+        while self.caps.len() > 1 && self.caps.front().is_some_and(|cap| cap.end_mm + reach(cap) < passed_mm)
         {
             self.caps.pop_front();
         }
@@ -257,6 +329,7 @@ impl Pace {
             second.start_mm = first.start_mm;
             second.ordered_mm_per_s = second.ordered_mm_per_s.min(first.ordered_mm_per_s);
             second.limit_mm_per_s = second.limit_mm_per_s.min(first.limit_mm_per_s);
+            second.share = second.share.min(first.share);
         }
     }
 
@@ -305,13 +378,21 @@ impl Pace {
         }
     }
 
+    /// How far ahead may lie what the tool is already slowing down for.
+    fn near_mm(&self) -> f64 {
+        let fastest = self.caps.iter().map(|cap| cap.speed(cap.feedrate)).fold(0.0, f64::max);
+        let shares = || self.caps.iter().map(|cap| cap.share);
+        let (share_min, share_max) = (shares().fold(1.0, f64::min), shares().fold(0.0, f64::max));
+        let less = self.caps.iter().filter(|cap| cap.share < share_max);
+        let reach = less.map(|cap| self.limits.averaging().reach_mm(cap.limit_mm_per_s, cap.share));
+        self.limits.stopping_mm(fastest, share_min) + reach.fold(0.0, f64::max)
+    }
+
     /// Lets another feedrate hold. What is so near that the tool may already be slowing down for it keeps its width,
     /// and becomes no faster: else the profile followed so far and the new one would not fit into one averaging.
     fn change_feedrate(&mut self, feedrate: Feedrate) {
         self.feedrate = feedrate;
-        let fastest = self.caps.iter().map(|cap| cap.speed(cap.feedrate)).fold(0.0, f64::max);
-        let is_standing = self.front.square == 0.0;
-        let near_mm = self.front.at_mm + if is_standing { 0.0 } else { self.foresight_mm(fastest) };
+        let near_mm = self.front.at_mm + if self.front.square == 0.0 { 0.0 } else { self.near_mm() };
         let mut index = 0;
         while index < self.caps.len() {
             let cap = self.caps[index];
@@ -365,8 +446,9 @@ impl Pace {
     fn plan_hill(&mut self) {
         let Some(cap) = self.caps.front() else { return };
         let growth = 2.0 * self.limits.acceleration_mm_per_s2;
-        let [left, right] = hill(self.end_mm, cap.wide_span().span.speed, growth, self.limits.window_s());
-        for knot in [left, right, Knot::new(self.end_mm, 0.0)] {
+        let growth = growth * cap.share;
+        let [left, right] = hill(self.end_mm, cap.speed(cap.feedrate), growth, self.limits.window_s());
+        for knot in [left, right, Knot::new(self.end_mm, 0.0, growth)] {
             self.add_knot(knot);
         }
         self.front.is_interrupted = false;
@@ -376,7 +458,7 @@ impl Pace {
     fn wait(&mut self) -> bool {
         let rest_s = self.limits.window_s() - self.front.lasting_s;
         let at = self.front.at_mm;
-        if rest_s > 0.0 && !self.add_phase(Knot::new(at, 0.0), rest_s) {
+        if rest_s > 0.0 && !self.add_phase(Knot::new(at, 0.0, 0.0), rest_s) {
             return false;
         }
         (self.front.lasting_s, self.front.is_interrupted) = (f64::INFINITY, false);
@@ -385,36 +467,34 @@ impl Pace {
 
     /// Whether there is more to plan at once.
     fn plan_once(&mut self) -> bool {
-        let growth = 2.0 * self.limits.acceleration_mm_per_s2;
         let window_s = self.limits.window_s();
-        let start = Knot::new(self.front.at_mm, self.front.square);
+        let start = Knot::new(self.front.at_mm, self.front.square, 0.0);
         let speed = start.square.sqrt();
         self.gather();
         let rest_mm = speed * (window_s - self.front.lasting_s).max(0.0);
         if self.front.is_interrupted && self.front.trend == Trend::Falling && rest_mm > 0.0 {
             self.slow_down_to(start.at + rest_mm, speed);
         }
-        backward(&self.spans, growth, &mut self.bounds);
+        backward(&self.spans, &mut self.bounds);
         if self.front.is_interrupted {
             let rising_mm = if self.front.trend == Trend::Rising { rest_mm } else { 0.0 };
-            if self.is_held || is_too_fast(&self.spans, &self.bounds, growth, start, rising_mm) {
+            if self.is_held || is_too_fast(&self.spans, &self.bounds, start, rising_mm) {
                 return self.obey(start, rising_mm);
             }
         }
-        forward(&self.spans, &self.bounds, growth, start, &mut self.knots);
+        forward(&self.spans, &self.bounds, start, &mut self.knots);
         let head_mm = match self.front.trend {
             Trend::Rising => speed * self.front.lasting_s,
             Trend::Falling => f64::INFINITY,
         };
-        flatten(&self.knots, growth, window_s, head_mm, &mut self.profile);
+        flatten(&self.knots, window_s, head_mm, &mut self.profile);
         self.commit();
         false
     }
 
     /// The spans from the front on.
     fn gather(&mut self) {
-        let half = self.limits.window_s() / 2.0;
-        widen(self.caps.iter(), half, &mut self.room, &mut self.spans);
+        widen(self.caps.iter(), self.limits.averaging(), &mut self.room, &mut self.spans);
         let at = self.front.at_mm;
         let passed = self.spans.iter().take_while(|span| span.end <= at).count();
         self.spans.drain(..passed);
@@ -443,21 +523,15 @@ impl Pace {
     /// Slows down from a state that is too fast for what is now asked: first the present speed for the rest of a
     /// window when it has just been reached by speeding up, then braking.
     fn obey(&mut self, start: Knot, rising_mm: f64) -> bool {
-        let growth = 2.0 * self.limits.acceleration_mm_per_s2;
         let speed = start.square.sqrt();
-        let coasted = Knot::new(start.at + rising_mm, start.square);
+        let coasted = Knot { at: start.at + rising_mm, ..start };
         if rising_mm > 0.0 && !self.add_phase(coasted, rising_mm / speed) {
             return false;
         }
-        let slow = if self.is_held {
-            Knot::new(coasted.at + coasted.square / growth, 0.0)
-        } else {
-            let passed = self.spans.iter().take_while(|span| span.end <= coasted.at).count();
-            self.spans.drain(..passed);
-            self.bounds.drain(..passed);
-            brake(&self.spans, &self.bounds, growth, coasted)
-        };
-        self.add_knot(slow);
+        brake(&self.spans, &self.bounds, self.is_held, coasted, &mut self.knots);
+        for index in 0..self.knots.len() {
+            self.add_knot(self.knots[index]);
+        }
         // Held at rest, it waits; else it goes on from there, not up again within a window.
         (self.front.trend, self.front.lasting_s) = (Trend::Falling, 0.0);
         !self.is_held
@@ -518,7 +592,7 @@ impl Pace {
             let is_last = to.at >= until_mm;
             if to.at > until_mm {
                 let part = (until_mm - from.at) / (to.at - from.at);
-                to = Knot::new(until_mm, from.square + (to.square - from.square) * part);
+                to = Knot { at: until_mm, square: from.square + (to.square - from.square) * part, ..to };
             }
             if !self.add_knot(to) || is_last {
                 break;
