@@ -29,6 +29,8 @@ const ACCELERATION: f64 = 3000.0;
 const TOLERANCE: f64 = 0.01;
 /// Jerk of a machine that jerks: as good as none is limited, as on the other side, mm/s³.
 const FREE_JERK: f64 = 1e7;
+/// Seconds in which its axes change their speed at a corner.
+const FREE_CORNER_S: f64 = 0.005;
 
 /// X and Z, mm.
 type Place = (f64, f64);
@@ -74,6 +76,10 @@ fn commands(path: &[Place], mm_per_min: f64) -> Vec<Order> {
 
 fn rates(jerk_per_s3: f64) -> MachineRates {
     let mut dynamics = Dynamics::default();
+    if jerk_per_s3 == FREE_JERK {
+        // A machine that does not jerk gets round its corners sooner, and both sides may leave the path as far.
+        dynamics.corner_s = FREE_CORNER_S;
+    }
     for axis in &mut dynamics.axes[..2] {
         (axis.acceleration_per_s2, axis.jerk_per_s3) = (ACCELERATION, jerk_per_s3);
     }

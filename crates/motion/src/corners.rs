@@ -25,6 +25,8 @@ struct Stretch {
     limit_mm_per_s: f64,
     share: f64,
     corner_mm_per_s: f64,
+    /// What the corner at its end leaves of the acceleration around it.
+    corner_share: f64,
     /// That of all corners before the one at its end.
     demand: Demand,
     has_corner: bool,
@@ -42,6 +44,8 @@ pub(crate) struct Corners {
     end_mm: f64,
     soonest_s: f64,
     heading: Option<Heading>,
+    /// The highest speed on the last leg, whatever is ordered.
+    limit_mm_per_s: f64,
     /// What the path is limited to.
     limits: RunLimits,
     /// Where the last corner was, when no tool was sooner there, and its speed were it alone.
@@ -67,6 +71,7 @@ impl Corners {
             end_mm: 0.0,
             soonest_s: 0.0,
             heading: None,
+            limit_mm_per_s: f64::INFINITY,
             limits: dynamics.cutting(false),
             last_mm: 0.0,
             last_s: 0.0,
@@ -88,22 +93,37 @@ impl Corners {
     }
 
     /// The next leg begins: the corner between it and the one before is known.
-    pub(crate) fn turn_into(&mut self, leg: &Leg) {
+    pub(crate) fn turn_into(&mut self, leg: &Leg, limit_mm_per_s: f64) {
         let start = leg.heading(0.0);
         if let (Some(end), Some(before)) = (&self.heading, self.waiting.back_mut())
             && self.law.time_s > 0.0
         {
             before.has_corner = true;
-            let met = self.demand;
-            self.law.add(&mut self.demand, end, &start);
-            self.pass(self.law.speed(&self.demand.since(&met)));
+            let limit = before.limit_mm_per_s;
+            let (corner, share) = self.law.demand(end, &start, least(self.limit_mm_per_s, limit_mm_per_s));
+            before.corner_share = share;
+            self.demand.add(&corner);
+            self.pass(&corner, limit);
             self.look_back();
         }
+        self.limit_mm_per_s = limit_mm_per_s;
         self.heading = Some(if leg.arc.is_some() { leg.heading(1.0) } else { start });
     }
 
-    /// No tool is sooner at the corner just met than the acceleration lets it, and the jerk.
-    fn pass(&mut self, mm_per_s: f64) {
+    /// No tool is sooner at the corner just met than the acceleration lets it, and the jerk; no stretch since the last one
+    /// is faster than `limit`.
+    fn pass(&mut self, corner: &Demand, limit: f64) {
+        let is_apart = self.soonest_s - self.last_s >= self.law.time_s;
+        let slowness = if is_apart { 0.0 } else { self.law.slowness(corner) };
+        let mm_per_s = if slowness * limit <= 1.0 { limit } else { 1.0 / slowness };
+        if !is_apart && (mm_per_s < limit || self.last_mm_per_s < limit) {
+            self.be_late(mm_per_s);
+        }
+        (self.last_mm, self.last_s, self.last_mm_per_s) = (self.end_mm, self.soonest_s, mm_per_s);
+    }
+
+    /// Between the last corner and the one just met, which is passed at a speed, the tool can only get so fast.
+    fn be_late(&mut self, mm_per_s: f64) {
         let way = self.end_mm - self.last_mm;
         let acceleration = self.limits.acceleration_mm_per_s2;
         let (slow, fast) = (least(self.last_mm_per_s, mm_per_s), most(self.last_mm_per_s, mm_per_s));
@@ -122,7 +142,6 @@ impl Corners {
         if let Some(before) = self.waiting.back_mut() {
             before.soonest_s = self.soonest_s;
         }
-        (self.last_mm, self.last_s, self.last_mm_per_s) = (self.end_mm, self.soonest_s, mm_per_s);
     }
 
     /// The only stretch of a path: its ordered speed and its limit.
@@ -152,6 +171,7 @@ impl Corners {
             limit_mm_per_s,
             share,
             corner_mm_per_s: f64::INFINITY,
+            corner_share: 1.0,
             demand: self.demand,
             has_corner: false,
         });
@@ -211,9 +231,13 @@ impl Corners {
                 let apart = (self.end_mm - first.end_mm) / self.law.time_s;
                 let is_early = !is_over && !is_apart;
                 let speed = if is_early { first.corner_mm_per_s.min(apart) } else { first.corner_mm_per_s };
-                let next = self.waiting.get(1).map_or(f64::INFINITY, |next| next.limit_mm_per_s);
-                // Slower than the stretches beside it, or it holds nobody up.
-                if speed < least(first.limit_mm_per_s, next) {
+                let next = self.waiting.get(1).unwrap_or(first);
+                let beside = least(first.limit_mm_per_s, next.limit_mm_per_s);
+                if first.corner_share < 1.0 {
+                    let ordered = least(first.ordered_mm_per_s, next.ordered_mm_per_s);
+                    pace.push_sharing(0.0, ordered, least(speed, beside), first.corner_share)?;
+                } else if speed < beside {
+                    // Slower than the stretches beside it, or it holds nobody up.
                     pace.push(0.0, f64::INFINITY, speed)?;
                 }
             }

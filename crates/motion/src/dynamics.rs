@@ -4,7 +4,7 @@
 //! has its share of what an axis can do, so that together they never ask for more. Rapids, alone on a straight way,
 //! have all of it.
 
-use crate::leg::{Heading, Leg, Place};
+use crate::leg::{Heading, Leg, Place, X, Z};
 use crate::planner::{RunLimits, SHARE_MAX, SHARE_MIN, most};
 
 /// Acceleration and jerk of one axis: mm of slide, or degrees, per s² and s³.
@@ -88,6 +88,10 @@ const LEG: f64 = 0.8;
 /// What a leg that hardly bends has along it: a little less than its share, so that most arcs are like lines.
 const ALONG: f64 = 0.78;
 
+/// Share of jerk where a curvature begins or ends: as much as it takes, from that of corners up to this. Arcs leave it
+/// to their ends all the way, lines near them only.
+const BEND: f64 = 0.5;
+
 /// Arcs are passed a little slower than they could, so that something is left for speeding up on them.
 const ARC: f64 = 0.95;
 
@@ -167,21 +171,21 @@ impl Dynamics {
         }
         let least = |of: fn(&AxisDynamics) -> f64| of(&self.axes[axes[0]]).min(of(&self.axes[axes[1]]));
         let acceleration = LEG * least(|axis| axis.acceleration_per_s2);
-        let jerk = LEG * least(|axis| axis.jerk_per_s3);
+        let jerk = (1.0 - BEND) * least(|axis| axis.jerk_per_s3);
         let window_s = along.window_s();
-        // With the least share along the path: 0.98² + 0.2² = 1, and (0.2 + 0.6)² + (0.2 · 3)² = 1.
-        let fastest = (0.98 * acceleration * radius_mm)
+        // With the least share along the path: 0.1² + 0.99² < 1, and of the jerk (0.16 + 0.6)² + (0.16 · 4)² < 1.
+        let fastest = (0.99 * acceleration * radius_mm)
             .sqrt()
             .min(libm::cbrt(0.6 * jerk * radius_mm * radius_mm))
-            .min(radius_mm / window_s);
+            .min(4.0 / 3.0 * radius_mm / window_s);
         let speed = (ARC * fastest).min(wanted);
         let turning = speed / radius_mm;
         let pull = speed * turning / acceleration;
         let (back, across) = (speed * turning * turning / jerk, 3.0 * turning * window_s);
-        // (share + back)² + (share · across)² = 1
+        // (part + back)² + (part · across)² = 1, where part is what is had along the path of what an arc has.
         let width = 1.0 + across * across;
         let jerky = ((back * back + width * (1.0 - back * back)).sqrt() - back) / width;
-        let share = jerky.min((1.0 - pull * pull).sqrt()) * LEG / ALONG;
+        let share = (jerky * (1.0 - BEND)).min((1.0 - pull * pull).sqrt() * LEG) / ALONG;
         (speed, share.clamp(SHARE_MIN, 1.0))
     }
 
@@ -211,7 +215,7 @@ impl Dynamics {
         let jerk = |axis: usize| CORNER * self.axes[axis].jerk_per_s3;
         let acceleration = |axis: usize| CORNER * self.axes[axis].acceleration_per_s2;
         // Of two corners a time apart the jerks may add up, the accelerations not. Where they may, no corner loses.
-        let is_brief = (0..AXIS_COUNT).all(|axis| jerk(axis) * time >= 2.0 * acceleration(axis));
+        let is_brief = [X, Z].into_iter().all(|axis| jerk(axis) * time >= 2.0 * acceleration(axis));
         let (span, fold) = if is_brief { (time, 2.0) } else { (2.0 * time, 1.0) };
         let step = |axis: usize| acceleration(axis).min(jerk(axis) * time / fold) * time;
         CornerLaw {
@@ -219,6 +223,7 @@ impl Dynamics {
             time_s: if self.acc_dec == AccDec::After { 0.0 } else { span },
             per_turn: std::array::from_fn(|axis| 1.0 / step(axis)),
             per_bend: std::array::from_fn(|axis| 1.0 / (time * jerk(axis))),
+            bend_share: BEND / CORNER,
             turn_jerk: std::array::from_fn(|axis| fold * step(axis) / (time * time * jerk(axis))),
         }
     }
@@ -237,6 +242,8 @@ pub(crate) struct CornerLaw {
     pub(crate) time_s: f64,
     /// Demand of a change of direction by 1.
     per_turn: Place,
+    /// A change of curvature may take so many times as much.
+    bend_share: f64,
     /// Demand of a change of curvature by 1.
     per_bend: Place,
     /// Part of the jerk that a change of direction takes at the speed that its demand allows.
@@ -263,25 +270,46 @@ impl Demand {
         let bend = if bends > 0 { difference(&self.bend, &earlier.bend) } else { Place::default() };
         Self { turn: difference(&self.turn, &earlier.turn), bend, bends }
     }
+
+    /// One more corner.
+    pub(crate) fn add(&mut self, corner: &Self) {
+        for axis in 0..AXIS_COUNT {
+            self.turn[axis] += corner.turn[axis];
+        }
+        if corner.bends > 0 {
+            for axis in 0..AXIS_COUNT {
+                self.bend[axis] += corner.bend[axis];
+            }
+            self.bends = self.bends.wrapping_add(corner.bends);
+        }
+    }
 }
 
 impl CornerLaw {
-    /// Adds what a change of heading asks for.
-    pub(crate) fn add(&self, sum: &mut Demand, from: &Heading, to: &Heading) {
-        let weigh = |sum: &mut Place, from: &Place, to: &Place, weights: &Place| {
-            for axis in 0..AXIS_COUNT {
-                sum[axis] += (to[axis] - from[axis]).abs() * weights[axis];
-            }
+    /// What a change of heading asks for, where nobody will be faster than `limit`; and the share of the acceleration
+    /// that it leaves along the path.
+    pub(crate) fn demand(&self, from: &Heading, to: &Heading, limit: f64) -> (Demand, f64) {
+        let weighed = |from: &Place, to: &Place, weights: &Place| -> Place {
+            std::array::from_fn(|axis| (to[axis] - from[axis]).abs() * weights[axis])
         };
-        weigh(&mut sum.turn, &from.direction, &to.direction, &self.per_turn);
+        let turn = weighed(&from.direction, &to.direction, &self.per_turn);
         if from.is_bent || to.is_bent {
-            weigh(&mut sum.bend, &from.curvature, &to.curvature, &self.per_bend);
-            sum.bends = sum.bends.wrapping_add(1);
+            let bend = weighed(&from.curvature, &to.curvature, &self.per_bend);
+            let wanted = limit * limit * bend.into_iter().fold(0.0, most);
+            let part = wanted.clamp(1.0, self.bend_share);
+            let share = if part > 1.0 { (1.0 - part * CORNER) / ALONG } else { 1.0 };
+            return (Demand { turn, bend: bend.map(|bend| bend / part), bends: 1 }, share);
         }
+        (Demand { turn, ..Demand::default() }, 1.0)
     }
 
     /// The highest speed at which a demand is met.
     pub(crate) fn speed(&self, demand: &Demand) -> f64 {
+        1.0 / self.slowness(demand)
+    }
+
+    /// 1 / that speed.
+    pub(crate) fn slowness(&self, demand: &Demand) -> f64 {
         let mut slowness = demand.turn.into_iter().fold(0.0, most);
         if demand.bends > 0 {
             for ((turn, bend), part) in demand.turn.iter().zip(&demand.bend).zip(&self.turn_jerk) {
@@ -290,7 +318,7 @@ impl CornerLaw {
                 slowness = most(slowness, (linear + (linear * linear + 4.0 * bend).sqrt()) / 2.0);
             }
         }
-        1.0 / slowness
+        slowness
     }
 }
 

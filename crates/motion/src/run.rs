@@ -60,7 +60,8 @@ impl CuttingRun {
 
     /// Begins a chain at rest.
     pub(crate) fn begin(&mut self, limits: RunLimits, rates: &MachineRates, spindle: TurningSpindle) {
-        self.pace.begin_sharing(limits, rates.cutting_max_mm_per_min / 60.0);
+        let fastest = rates.cutting_max_mm_per_min / 60.0;
+        self.pace.begin_sharing(limits, fastest, 2.0 * self.dynamics.corner_s);
         self.ends_mm.clear();
         self.legs.iter_mut().for_each(VecDeque::clear);
         self.corners.begin(limits);
@@ -84,7 +85,7 @@ impl CuttingRun {
         self.end_mm += leg.length_mm;
         self.ends_mm.push_back(self.end_mm);
         self.legs.iter_mut().for_each(|legs| legs.push_back(*leg));
-        self.corners.turn_into(leg);
+        self.corners.turn_into(leg, limit.0);
         let has_room = self.corners.pour(&mut self.pace, false).is_ok() || self.corners.has_room();
         match order {
             Order::Speed(speed) if has_room => self.corners.add(leg.length_mm, speed, limit),

@@ -44,7 +44,7 @@ impl Case {
     /// A path that has not come in yet.
     fn begun(&self, capacity: usize) -> Pace {
         let mut pace = Pace::with_capacity(capacity, self.limits);
-        pace.begin_sharing(self.limits, 400.0);
+        pace.begin_sharing(self.limits, 400.0, 0.0);
         pace
     }
 
@@ -338,8 +338,9 @@ fn a_higher_override_is_never_later() {
             pace.plan();
             let duration = pace.duration_s().expect("planned");
             // Caps widen with their speed: near the start of a slow stretch, or behind a corner that a slower path
-            // would not have noticed, two percent may be lost.
-            assert!(duration <= last * 1.02, "{seed} {percent} {duration} after {last}");
+            // would not have noticed, a percent may be lost; and where accelerations differ tenfold, four.
+            let lost = if case.pieces.iter().all(|piece| piece.3 == 1.0) { 0.01 } else { 0.04 };
+            assert!(duration <= last * (1.0 + lost), "{seed} {percent} {duration} after {last}");
             last = duration;
         }
     }

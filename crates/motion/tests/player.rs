@@ -158,7 +158,7 @@ fn samples_take_as_long_as_the_schedule_says() {
         let samples = played(at(30.0, 5.0), 1000.0, &actions, &[]);
         let last = samples[samples.len() - 1].time_s;
         // The player has to reckon with overrides: it sees more corners close together.
-        assert!((last - seconds).abs() < 4e-3, "{seed}: {last} {seconds}");
+        assert!((last - seconds).abs() < 6e-3, "{seed}: {last} {seconds}");
     }
 }
 

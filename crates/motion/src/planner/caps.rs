@@ -9,7 +9,8 @@
 //! speed above V, the window would cover more path than V·T; it would reach beyond the widened stretch on one side
 //! only, and the mean place would lie beyond the stretch. The mean acceleration on a stretch is one of its window, so
 //! all of that has to lie where the acceleration is no more; it leaves the stretch no faster than V and with no more
-//! than its acceleration A, and so gets no further than V·T + A·T²/2.
+//! than its acceleration A, and so gets no further than V·T + A·T²/2. A corner that is rounded behind the averaging is
+//! felt for so much longer.
 
 use super::{least, most};
 
@@ -43,7 +44,7 @@ pub struct Cap {
 }
 
 /// No stretch has a smaller share of the acceleration.
-pub const SHARE_MIN: f64 = 0.2;
+pub const SHARE_MIN: f64 = 0.1;
 
 /// No stretch has a larger one.
 pub const SHARE_MAX: f64 = 2.0;
@@ -72,7 +73,9 @@ impl Cap {
     /// Share and its width.
     fn wide_share(&self, averaging: Averaging) -> WideLevel {
         let level = Level { start: self.start_mm, end: self.end_mm, value: self.share };
-        WideLevel { level, reach: averaging.reach_mm(self.speed(self.width_feedrate), self.share) }
+        let rounding_s = if self.start_mm == self.end_mm { averaging.rounding_s } else { 0.0 };
+        let reach = averaging.reach_mm(self.speed(self.width_feedrate), self.share, rounding_s);
+        WideLevel { level, reach }
     }
 }
 
@@ -105,14 +108,22 @@ impl Level {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Averaging {
     pub(super) window_s: f64,
+    /// So much longer corners are felt, which are rounded behind the averaging.
+    pub(super) rounding_s: f64,
     /// Of a share of 1.
     pub(super) acceleration: f64,
 }
 
 impl Averaging {
-    /// How far a tool gets in one window from a stretch that it leaves at a speed.
-    pub(super) fn reach_mm(self, speed: f64, share: f64) -> f64 {
-        self.window_s * (speed + share * self.acceleration * self.window_s / 2.0)
+    /// How far a tool gets in one window, and so much longer, from a stretch that it leaves at a speed.
+    pub(super) fn reach_mm(self, speed: f64, share: f64, longer_s: f64) -> f64 {
+        let seconds = self.window_s + longer_s;
+        seconds * (speed + share * self.acceleration * seconds / 2.0)
+    }
+
+    /// No stretch or corner with such a speed and share is felt further than this.
+    pub(super) fn reach_max_mm(self, speed: f64, share: f64) -> f64 {
+        self.reach_mm(speed, share, self.rounding_s)
     }
 }
 
@@ -193,7 +204,8 @@ pub(super) fn widen<'a>(
         return;
     }
     wide.clear();
-    wide.extend(caps.filter(|cap| cap.start_mm < cap.end_mm).map(|cap| cap.wide_share(averaging)));
+    let counts = |cap: &&Cap| cap.start_mm < cap.end_mm || cap.share < 1.0;
+    wide.extend(caps.filter(counts).map(|cap| cap.wide_share(averaging)));
     widen_both(wide, forward, backward, shares);
     overlay(speeds, shares.iter().copied(), |start, end, speed, share| {
         out.push(Span { start, end, speed, growth: growth * share });
@@ -328,7 +340,7 @@ mod tests {
                 share: 1.0,
             })
             .collect();
-        let averaging = Averaging { window_s: 2.0 * half_window_s, acceleration: 1.0 };
+        let averaging = Averaging { window_s: 2.0 * half_window_s, rounding_s: 0.0, acceleration: 1.0 };
         widen(caps.iter(), averaging, &mut room, &mut out);
         out.iter().map(|span| (span.start, span.end, span.speed)).collect()
     }

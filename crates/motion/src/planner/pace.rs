@@ -36,13 +36,13 @@ impl RunLimits {
             + 2.0 * speed_mm_per_s * self.window_s()
     }
 
-    pub(super) fn averaging(self) -> Averaging {
-        Averaging { window_s: self.window_s(), acceleration: self.acceleration_mm_per_s2 }
+    fn averaging(self, rounding_s: f64) -> Averaging {
+        Averaging { window_s: self.window_s(), rounding_s, acceleration: self.acceleration_mm_per_s2 }
     }
 
     /// How far a tool gets beyond a stretch that it leaves at a speed while the averaging still sees that stretch, mm.
     pub(crate) fn reach_mm(self, speed_mm_per_s: f64) -> f64 {
-        self.averaging().reach_mm(speed_mm_per_s, 1.0)
+        self.averaging(0.0).reach_mm(speed_mm_per_s, 1.0, 0.0)
     }
 
     /// Seconds from rest to a speed.
@@ -123,7 +123,8 @@ impl Front {
 #[derive(Clone, Debug)]
 pub struct Pace {
     limits: RunLimits,
-    /// No stretch that is to come reaches back further than this.
+    averaging: Averaging,
+    /// No stretch that is to come reaches back further than this; 0 where all have the same acceleration.
     reach_max_mm: f64,
     capacity: usize,
     caps: VecDeque<Cap>,
@@ -154,6 +155,7 @@ impl Pace {
         let spans = SPANS_PER_CAP * caps + 8;
         Self {
             limits,
+            averaging: limits.averaging(0.0),
             reach_max_mm: 0.0,
             capacity,
             caps: VecDeque::with_capacity(caps),
@@ -174,14 +176,14 @@ impl Pace {
 
     /// Begins another path at rest; override and hold stay.
     pub fn begin(&mut self, limits: RunLimits) {
-        self.begin_sharing(limits, 0.0);
+        self.begin_sharing(limits, 0.0, 0.0);
     }
 
-    /// Begins another path at rest, with stretches that have other accelerations and are passed at no more than
-    /// `speed_max_mm_per_s`; 0 without such.
-    pub fn begin_sharing(&mut self, limits: RunLimits, speed_max_mm_per_s: f64) {
-        self.limits = limits;
-        let reach_mm = limits.averaging().reach_mm(speed_max_mm_per_s, SHARE_MAX);
+    /// Begins another path at rest, with stretches and corners that have other accelerations and are passed at no more
+    /// than `speed_max_mm_per_s`; 0 without such. Corners are felt for `rounding_s` longer than the averaging takes.
+    pub fn begin_sharing(&mut self, limits: RunLimits, speed_max_mm_per_s: f64, rounding_s: f64) {
+        (self.limits, self.averaging) = (limits, limits.averaging(rounding_s));
+        let reach_mm = self.averaging.reach_max_mm(speed_max_mm_per_s, SHARE_MAX);
         self.reach_max_mm = if speed_max_mm_per_s > 0.0 { reach_mm } else { 0.0 };
         self.caps.clear();
         (self.end_mm, self.is_closed) = (0.0, false);
@@ -207,7 +209,8 @@ impl Pace {
         self.push_sharing(length_mm, ordered_mm_per_s, limit_mm_per_s, 1.0)
     }
 
-    /// Adds a stretch that has another acceleration: its share, from [`SHARE_MIN`] to [`SHARE_MAX`], times that of the limits.
+    /// Adds a stretch or a corner with another acceleration: its share, from [`SHARE_MIN`] to [`SHARE_MAX`], times that of
+    /// the limits.
     ///
     /// # Errors
     /// When there is no room.
@@ -257,7 +260,8 @@ impl Pace {
         if let (Some(cap), 1, true) =
             (self.caps.front(), self.caps.len(), self.is_closed && self.phases.is_empty())
         {
-            self.limits = self.limits.eased(self.end_mm, cap.speed(cap.feedrate));
+            let limits = self.limits.eased(self.end_mm, cap.speed(cap.feedrate));
+            (self.limits, self.averaging) = (limits, limits.averaging(0.0));
         }
     }
 
@@ -313,10 +317,10 @@ impl Pace {
 
     fn forget_caps(&mut self, passed_mm: f64) {
         // Without other shares only its speed reaches on, half as far.
-        let (averaging, half) = (self.limits.averaging(), self.limits.window_s() / 2.0);
+        let (averaging, half) = (self.averaging, self.limits.window_s() / 2.0);
         let reach = |cap: &Cap| match cap.share {
             _ if self.reach_max_mm == 0.0 => cap.limit_mm_per_s * half,
-            share => averaging.reach_mm(cap.limit_mm_per_s, share),
+            share => averaging.reach_max_mm(cap.limit_mm_per_s, share),
         };
         while self.caps.len() > 1 && self.caps.front().is_some_and(|cap| cap.end_mm + reach(cap) < passed_mm)
         {
@@ -384,7 +388,7 @@ impl Pace {
         let shares = || self.caps.iter().map(|cap| cap.share);
         let (share_min, share_max) = (shares().fold(1.0, f64::min), shares().fold(0.0, f64::max));
         let less = self.caps.iter().filter(|cap| cap.share < share_max);
-        let reach = less.map(|cap| self.limits.averaging().reach_mm(cap.limit_mm_per_s, cap.share));
+        let reach = less.map(|cap| self.averaging.reach_max_mm(cap.limit_mm_per_s, cap.share));
         self.limits.stopping_mm(fastest, share_min) + reach.fold(0.0, f64::max)
     }
 
@@ -494,7 +498,7 @@ impl Pace {
 
     /// The spans from the front on.
     fn gather(&mut self) {
-        widen(self.caps.iter(), self.limits.averaging(), &mut self.room, &mut self.spans);
+        widen(self.caps.iter(), self.averaging, &mut self.room, &mut self.spans);
         let at = self.front.at_mm;
         let passed = self.spans.iter().take_while(|span| span.end <= at).count();
         self.spans.drain(..passed);
