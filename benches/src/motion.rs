@@ -59,6 +59,7 @@ pub fn run(samples: u64, board: &mut Board) -> Result<(), String> {
 fn segments(board: &mut Board) -> Result<(), String> {
     const COUNT: usize = 400_000;
     let limits = RunLimits { acceleration_mm_per_s2: 3000.0, jerk_mm_per_s3: 150_000.0 };
+    let mut slowest = 0.0f64;
     for (name, shortest, longest) in
         [("0.05 to 0.5 mm", 0.05, 0.5), ("0.5 to 5 mm", 0.5, 5.0), ("5 to 200 mm", 5.0, 200.0)]
     {
@@ -71,6 +72,7 @@ fn segments(board: &mut Board) -> Result<(), String> {
             pace.begin(limits);
             let _ = pace.push(*way, 200.0, 200.0);
             pace.close();
+            pace.ease();
             pace.plan();
             ours_s += pace.duration_s().unwrap_or(f64::NAN);
         }
@@ -92,7 +94,6 @@ fn segments(board: &mut Board) -> Result<(), String> {
         let theirs_ns = started.nanoseconds_each(COUNT);
         if shortest == 5.0 {
             board.note("T1", theirs_ns / ours_ns);
-            board.note("T1 time", ours_s / optimum_s);
         } else if longest == 0.5 {
             board.note("T1 short", theirs_ns / ours_ns);
         }
@@ -101,7 +102,9 @@ fn segments(board: &mut Board) -> Result<(), String> {
             theirs_ns / ours_ns,
             ours_s / optimum_s
         );
+        slowest = slowest.max(ours_s / optimum_s);
     }
+    board.note("T1 time", slowest);
     Ok(())
 }
 

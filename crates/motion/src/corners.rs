@@ -100,21 +100,21 @@ impl Corners {
         {
             before.has_corner = true;
             let limit = before.limit_mm_per_s;
-            let (corner, share) = self.law.demand(end, &start, least(self.limit_mm_per_s, limit_mm_per_s));
+            let fastest = least(self.limit_mm_per_s, limit_mm_per_s);
+            let (slowness, share) = self.law.add(&mut self.demand, end, &start, fastest);
             before.corner_share = share;
-            self.demand.add(&corner);
-            self.pass(&corner, limit);
+            self.pass(slowness, limit);
             self.look_back();
         }
         self.limit_mm_per_s = limit_mm_per_s;
         self.heading = Some(if leg.arc.is_some() { leg.heading(1.0) } else { start });
     }
 
-    /// No tool is sooner at the corner just met than the acceleration lets it, and the jerk; no stretch since the last one
-    /// is faster than `limit`.
-    fn pass(&mut self, corner: &Demand, limit: f64) {
+    /// No tool is sooner at the corner just met, which alone is passed at 1 / `slowness`, than the acceleration lets it,
+    /// and the jerk; no stretch since the last one is faster than `limit`.
+    #[inline]
+    fn pass(&mut self, slowness: f64, limit: f64) {
         let is_apart = self.soonest_s - self.last_s >= self.law.time_s;
-        let slowness = if is_apart { 0.0 } else { self.law.slowness(corner) };
         let mm_per_s = if slowness * limit <= 1.0 { limit } else { 1.0 / slowness };
         if !is_apart && (mm_per_s < limit || self.last_mm_per_s < limit) {
             self.be_late(mm_per_s);

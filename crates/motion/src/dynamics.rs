@@ -270,37 +270,43 @@ impl Demand {
         let bend = if bends > 0 { difference(&self.bend, &earlier.bend) } else { Place::default() };
         Self { turn: difference(&self.turn, &earlier.turn), bend, bends }
     }
-
-    /// One more corner.
-    pub(crate) fn add(&mut self, corner: &Self) {
-        for axis in 0..AXIS_COUNT {
-            self.turn[axis] += corner.turn[axis];
-        }
-        if corner.bends > 0 {
-            for axis in 0..AXIS_COUNT {
-                self.bend[axis] += corner.bend[axis];
-            }
-            self.bends = self.bends.wrapping_add(corner.bends);
-        }
-    }
 }
 
 impl CornerLaw {
-    /// What a change of heading asks for, where nobody will be faster than `limit`; and the share of the acceleration
-    /// that it leaves along the path.
-    pub(crate) fn demand(&self, from: &Heading, to: &Heading, limit: f64) -> (Demand, f64) {
-        let weighed = |from: &Place, to: &Place, weights: &Place| -> Place {
-            std::array::from_fn(|axis| (to[axis] - from[axis]).abs() * weights[axis])
-        };
-        let turn = weighed(&from.direction, &to.direction, &self.per_turn);
-        if from.is_bent || to.is_bent {
-            let bend = weighed(&from.curvature, &to.curvature, &self.per_bend);
-            let wanted = limit * limit * bend.into_iter().fold(0.0, most);
-            let part = wanted.clamp(1.0, self.bend_share);
-            let share = if part > 1.0 { (1.0 - part * CORNER) / ALONG } else { 1.0 };
-            return (Demand { turn, bend: bend.map(|bend| bend / part), bends: 1 }, share);
+    /// Adds what a change of heading asks for, where nobody will be faster than `limit`. Gives 1 / the highest speed at
+    /// which it is met alone, and the share of the acceleration that it leaves along the path.
+    #[inline]
+    pub(crate) fn add(&self, sum: &mut Demand, from: &Heading, to: &Heading, limit: f64) -> (f64, f64) {
+        let mut turn = Place::default();
+        let mut slowness = 0.0;
+        for axis in 0..AXIS_COUNT {
+            turn[axis] = (to.direction[axis] - from.direction[axis]).abs() * self.per_turn[axis];
+            sum.turn[axis] += turn[axis];
+            slowness = most(slowness, turn[axis]);
         }
-        (Demand { turn, ..Demand::default() }, 1.0)
+        if from.is_bent || to.is_bent { self.add_bend(sum, from, to, limit, &turn) } else { (slowness, 1.0) }
+    }
+
+    fn add_bend(
+        &self,
+        sum: &mut Demand,
+        from: &Heading,
+        to: &Heading,
+        limit: f64,
+        turn: &Place,
+    ) -> (f64, f64) {
+        let bend: Place = std::array::from_fn(|axis| {
+            (to.curvature[axis] - from.curvature[axis]).abs() * self.per_bend[axis]
+        });
+        let wanted = limit * limit * bend.into_iter().fold(0.0, most);
+        let part = wanted.clamp(1.0, self.bend_share);
+        let corner = Demand { turn: *turn, bend: bend.map(|bend| bend / part), bends: 1 };
+        for (sum, bend) in sum.bend.iter_mut().zip(&corner.bend) {
+            *sum += bend;
+        }
+        sum.bends = sum.bends.wrapping_add(1);
+        let share = if part > 1.0 { (1.0 - part * CORNER) / ALONG } else { 1.0 };
+        (self.slowness(&corner), share)
     }
 
     /// The highest speed at which a demand is met.
@@ -309,7 +315,7 @@ impl CornerLaw {
     }
 
     /// 1 / that speed.
-    pub(crate) fn slowness(&self, demand: &Demand) -> f64 {
+    fn slowness(&self, demand: &Demand) -> f64 {
         let mut slowness = demand.turn.into_iter().fold(0.0, most);
         if demand.bends > 0 {
             for ((turn, bend), part) in demand.turn.iter().zip(&demand.bend).zip(&self.turn_jerk) {

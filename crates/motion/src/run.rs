@@ -81,7 +81,11 @@ impl CuttingRun {
 
     /// Takes up a leg, when there is room.
     pub(crate) fn push(&mut self, leg: &Leg, order: Order, limit: (f64, f64)) {
-        self.only = (self.end_mm == 0.0 && leg.arc.is_none()).then_some(*leg);
+        if self.end_mm > 0.0 || leg.arc.is_some() {
+            self.only = None;
+        } else {
+            self.only = Some(*leg);
+        }
         self.end_mm += leg.length_mm;
         self.ends_mm.push_back(self.end_mm);
         self.legs.iter_mut().for_each(|legs| legs.push_back(*leg));
