@@ -279,10 +279,10 @@ impl CornerLaw {
     pub(crate) fn add(&self, sum: &mut Demand, from: &Heading, to: &Heading, limit: f64) -> (f64, f64) {
         let mut turn = Place::default();
         let mut slowness = 0.0;
-        for axis in 0..AXIS_COUNT {
-            turn[axis] = (to.direction[axis] - from.direction[axis]).abs() * self.per_turn[axis];
-            sum.turn[axis] += turn[axis];
-            slowness = most(slowness, turn[axis]);
+        for (axis, turn) in turn.iter_mut().enumerate() {
+            *turn = (to.direction[axis] - from.direction[axis]).abs() * self.per_turn[axis];
+            sum.turn[axis] += *turn;
+            slowness = most(slowness, *turn);
         }
         if from.is_bent || to.is_bent { self.add_bend(sum, from, to, limit, &turn) } else { (slowness, 1.0) }
     }
