@@ -235,6 +235,9 @@ impl Turned {
             Self::Rapid(rapid) => panel.rapid = rapid,
             Self::DryRun(None) => panel.dry_run_mm_per_min = None,
             Self::DryRun(Some(DryRun::At(speed))) => panel.dry_run_mm_per_min = Some(speed),
+            Self::DryRun(Some(DryRun::OfParameter)) if parameters.number("dry-run-feed").is_none() => {
+                return Err(Finding::new("", Diagnostic::error("dry-run-by-hand-feed")).failed());
+            }
             Self::DryRun(Some(DryRun::OfParameter)) => {
                 let speed = parameters.value("dry-run-feed");
                 if speed <= 0.0 {

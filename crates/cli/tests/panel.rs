@@ -123,4 +123,11 @@ fn what_no_panel_has_is_refused_with_what_would_be_right() {
     // The number is that of the control.
     let ran = turnwright(&["time", &program, "--control", "gsk-980tdi", "--rapid-override", "F0"]);
     assert!(ran.status == 2 && ran.err.contains("parameter 032 is 0"), "{}", ran.err);
+    // The 980 has no parameter for the speed of dry runs.
+    let ran = turnwright(&["time", &program, "--control", "gsk-980tdi", "--dry-run"]);
+    assert!(ran.status == 2 && ran.err.contains("T384") && ran.err.contains("manual feed"), "{}", ran.err);
+    let ran = turnwright(&["motion", &program, "--control", "gsk-980tdi", "--at", "1:dry-run=on"]);
+    assert!(ran.status == 2 && ran.err.contains("T384"), "{}", ran.err);
+    let ran = turnwright(&["time", &program, "--control", "gsk-980tdi", "--dry-run=1260"]);
+    assert_eq!(ran.status, 0, "{}", ran.err);
 }
