@@ -7,6 +7,10 @@ use turnwright_units::Angle;
 /// A thread with more turns in one move is cut as a plain way.
 pub const TURNS_MAX: u32 = 20_000;
 
+/// The same on a face: all its turns lie beside each other at one Z, and every cut would look at each of them. A scroll has a
+/// dozen turns; hundreds come of a lost decimal point.
+pub const FACE_TURNS_MAX: u32 = 100;
+
 /// No more threads are remembered.
 pub const THREADS_MAX: usize = 200;
 
@@ -84,7 +88,8 @@ impl Phase {
         let (dz, dx) = (way.end.z - way.start.z, way.end.x - way.start.x);
         let length = dz.abs().max(dx.abs());
         let turns = 2.0 * length / (lead_mm.0 + lead_mm.1);
-        if !(turns > 0.0 && turns <= f64::from(TURNS_MAX)) {
+        let turns_max = if dx.abs() > dz.abs() { FACE_TURNS_MAX } else { TURNS_MAX };
+        if !(turns > 0.0 && turns <= f64::from(turns_max)) {
             return None;
         }
         let first = if self.0 == 0.0 { 0.0 } else { 1.0 - self.0 };
@@ -167,6 +172,14 @@ mod tests {
 
     fn places(phase: &mut Phase, way: &Segment, lead_mm: (f64, f64)) -> Vec<f64> {
         phase.turns(way, lead_mm).expect("a thread").map(|place| (place.z * 1e9).round() / 1e9).collect()
+    }
+
+    #[test]
+    fn more_turns_are_followed_along_the_axis_than_on_a_face() {
+        let is_followed = |way: Segment| Phase::default().turns(&way, (2., 2.)).is_some();
+        assert!(is_followed(line(10. + 200., 2.)));
+        assert!(!is_followed(line(10. + 204., 2.)));
+        assert!(is_followed(line(9., 3. - 204.)));
     }
 
     #[test]
