@@ -185,41 +185,51 @@ fn collect_speeds<'a>(caps: impl Iterator<Item = &'a Cap>, half_window_s: f64, o
     out.extend(corner);
 }
 
-/// Widens caps to both sides, into `out`.
+/// Widens caps to both sides, into `out`; `is_alike` when all have the same acceleration.
 pub(super) fn widen<'a>(
     caps: impl Iterator<Item = &'a Cap> + Clone,
+    is_alike: bool,
     averaging: Averaging,
     room: &mut Room,
     out: &mut Vec<Span>,
 ) {
     let Room { wide, forward, backward, speeds, shares } = room;
     let growth = 2.0 * averaging.acceleration;
-    let is_alike = caps.clone().all(|cap| cap.share == 1.0);
-    collect_speeds(caps.clone(), averaging.window_s / 2.0, wide);
-    widen_both(wide, forward, backward, speeds);
     out.clear();
+    collect_speeds(caps.clone(), averaging.window_s / 2.0, wide);
     if is_alike {
-        let span = |level: &Level| Span { start: level.start, end: level.end, speed: level.value, growth };
-        out.extend(speeds.iter().map(span));
-        return;
+        return widen_both(wide, forward, backward, |start, end, speed| match out.last_mut() {
+            Some(last) if last.speed == speed => last.end = end,
+            _ => out.push(Span { start, end, speed, growth }),
+        });
     }
+    let collect = |out: &mut Vec<Level>, wide: &[WideLevel], forward: &mut _, backward: &mut _| {
+        out.clear();
+        widen_both(wide, forward, backward, |start, end, value| append(out, Level { start, end, value }));
+    };
+    collect(speeds, wide, forward, backward);
     wide.clear();
     let counts = |cap: &&Cap| cap.start_mm < cap.end_mm || cap.share < 1.0;
     wide.extend(caps.filter(counts).map(|cap| cap.wide_share(averaging)));
-    widen_both(wide, forward, backward, shares);
+    collect(shares, wide, forward, backward);
     overlay(speeds, shares.iter().copied(), |start, end, speed, share| {
         out.push(Span { start, end, speed, growth: growth * share });
     });
 }
 
 /// Widens levels to both sides.
-fn widen_both(wide: &[WideLevel], forward: &mut Vec<Level>, backward: &mut Vec<Level>, out: &mut Vec<Level>) {
+#[inline]
+fn widen_both(
+    wide: &[WideLevel],
+    forward: &mut Vec<Level>,
+    backward: &mut Vec<Level>,
+    mut each: impl FnMut(f64, f64, f64),
+) {
     widen_forward(wide.iter().copied(), forward);
     let mirrored = |wide: &WideLevel| WideLevel { level: wide.level.mirrored(), ..*wide };
     widen_forward(wide.iter().rev().map(mirrored), backward);
-    out.clear();
     overlay(forward, backward.iter().rev().map(|level| level.mirrored()), |start, end, one, other| {
-        append(out, Level { start, end, value: least(one, other) });
+        each(start, end, least(one, other));
     });
 }
 
@@ -341,7 +351,7 @@ mod tests {
             })
             .collect();
         let averaging = Averaging { window_s: 2.0 * half_window_s, rounding_s: 0.0, acceleration: 1.0 };
-        widen(caps.iter(), averaging, &mut room, &mut out);
+        widen(caps.iter(), true, averaging, &mut room, &mut out);
         out.iter().map(|span| (span.start, span.end, span.speed)).collect()
     }
 

@@ -124,6 +124,8 @@ impl Front {
 pub struct Pace {
     limits: RunLimits,
     averaging: Averaging,
+    /// So far all of it has the same acceleration.
+    is_alike: bool,
     /// No stretch that is to come reaches back further than this; 0 where all have the same acceleration.
     reach_max_mm: f64,
     capacity: usize,
@@ -156,6 +158,7 @@ impl Pace {
         Self {
             limits,
             averaging: limits.averaging(0.0),
+            is_alike: true,
             reach_max_mm: 0.0,
             capacity,
             caps: VecDeque::with_capacity(caps),
@@ -186,6 +189,7 @@ impl Pace {
         let reach_mm = self.averaging.reach_max_mm(speed_max_mm_per_s, SHARE_MAX);
         self.reach_max_mm = if speed_max_mm_per_s > 0.0 { reach_mm } else { 0.0 };
         self.caps.clear();
+        self.is_alike = true;
         (self.end_mm, self.is_closed) = (0.0, false);
         self.front = Front::REST;
         self.phases.clear();
@@ -221,6 +225,7 @@ impl Pace {
         limit_mm_per_s: f64,
         share: f64,
     ) -> Result<(), Full> {
+        self.is_alike &= share == 1.0;
         let end_mm = self.end_mm + length_mm;
         // Stretches with the same speed are one: look-ahead then costs nothing.
         if let Some(last) = self.caps.back_mut()
@@ -319,7 +324,7 @@ impl Pace {
         // Without other shares only its speed reaches on, half as far.
         let (averaging, half) = (self.averaging, self.limits.window_s() / 2.0);
         let reach = |cap: &Cap| match cap.share {
-            _ if self.reach_max_mm == 0.0 => cap.limit_mm_per_s * half,
+            _ if self.is_alike => cap.limit_mm_per_s * half,
             share => averaging.reach_max_mm(cap.limit_mm_per_s, share),
         };
         while self.caps.len() > 1 && self.caps.front().is_some_and(|cap| cap.end_mm + reach(cap) < passed_mm)
@@ -498,7 +503,7 @@ impl Pace {
 
     /// The spans from the front on.
     fn gather(&mut self) {
-        widen(self.caps.iter(), self.averaging, &mut self.room, &mut self.spans);
+        widen(self.caps.iter(), self.is_alike, self.averaging, &mut self.room, &mut self.spans);
         let at = self.front.at_mm;
         let passed = self.spans.iter().take_while(|span| span.end <= at).count();
         self.spans.drain(..passed);
