@@ -191,7 +191,7 @@ impl Corners {
             if is_out(stretch) && self.group < last {
                 self.apart = None;
             } else if stretch.has_corner {
-                let together = self.law.speed(&self.demand.since(&stretch.demand));
+                let together = self.law.speed_since(&stretch.demand, &self.demand);
                 if way_speed(stretch) < together || self.group == last {
                     break together;
                 }

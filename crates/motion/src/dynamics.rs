@@ -263,12 +263,15 @@ pub(crate) struct Demand {
 
 impl Demand {
     /// That of the corners met since it was `earlier`.
-    pub(crate) fn since(&self, earlier: &Self) -> Self {
+    fn since(&self, earlier: &Self) -> Self {
         let difference =
             |now: &Place, then: &Place| -> Place { std::array::from_fn(|axis| now[axis] - then[axis]) };
         let bends = self.bends.wrapping_sub(earlier.bends);
-        let bend = if bends > 0 { difference(&self.bend, &earlier.bend) } else { Place::default() };
-        Self { turn: difference(&self.turn, &earlier.turn), bend, bends }
+        Self {
+            turn: difference(&self.turn, &earlier.turn),
+            bend: difference(&self.bend, &earlier.bend),
+            bends,
+        }
     }
 }
 
@@ -309,12 +312,17 @@ impl CornerLaw {
         (self.slowness(&corner), share)
     }
 
-    /// The highest speed at which a demand is met.
-    pub(crate) fn speed(&self, demand: &Demand) -> f64 {
-        1.0 / self.slowness(demand)
+    /// The highest speed at which the demand of the corners met since it was `earlier` is met.
+    #[inline]
+    pub(crate) fn speed_since(&self, earlier: &Demand, now: &Demand) -> f64 {
+        if now.bends != earlier.bends {
+            return 1.0 / self.slowness(&now.since(earlier));
+        }
+        let turns = now.turn.iter().zip(&earlier.turn).map(|(now, earlier)| now - earlier);
+        1.0 / turns.fold(0.0, most)
     }
 
-    /// 1 / that speed.
+    /// 1 / the highest speed at which a demand is met.
     fn slowness(&self, demand: &Demand) -> f64 {
         let mut slowness = demand.turn.into_iter().fold(0.0, most);
         if demand.bends > 0 {
