@@ -52,7 +52,17 @@ fn thread(x: f64, z: f64, lead: f64, degrees: i64, is_chained: bool) -> Action {
 }
 
 fn played(start: Position<WorkTip>, hz: f64, actions: &[Action], panels: &[(f64, Panel)]) -> Vec<Sample> {
-    let mut player = Player::new(start, rates(), hz);
+    played_on(rates(), start, hz, actions, panels)
+}
+
+fn played_on(
+    rates: MachineRates,
+    start: Position<WorkTip>,
+    hz: f64,
+    actions: &[Action],
+    panels: &[(f64, Panel)],
+) -> Vec<Sample> {
+    let mut player = Player::new(start, rates, hz);
     let mut samples = Vec::new();
     for (time_s, panel) in panels {
         player.set_at(*time_s, *panel);
@@ -67,8 +77,11 @@ fn played(start: Position<WorkTip>, hz: f64, actions: &[Action], panels: &[(f64,
 
 /// Every limit of every axis, by differences of the places.
 fn inspect(samples: &[Sample], hz: f64, case: &dyn std::fmt::Debug) {
-    let dynamics = Dynamics::default();
-    let rates = rates();
+    inspect_on(rates(), samples, hz, case);
+}
+
+fn inspect_on(rates: MachineRates, samples: &[Sample], hz: f64, case: &dyn std::fmt::Debug) {
+    let dynamics = rates.dynamics.expect("a machine");
     let speeds = [rates.rapid_x_mm_per_min / 60.0, rates.rapid_z_mm_per_min / 60.0];
     for (axis, speed) in speeds.into_iter().enumerate() {
         let limits = dynamics.axes[axis];
@@ -136,6 +149,38 @@ fn no_axis_passes_a_limit_at_any_tick_and_the_end_is_exact() {
         let hz = [1000.0, 1000.0, 250.0, 4000.0][(seed % 4) as usize];
         let samples = played(at(30.0, 5.0), hz, &actions, &[]);
         inspect(&samples, hz, &seed);
+        let (end, last) = (end_of(&actions), samples[samples.len() - 1]);
+        assert!((last.place[0] - end.x.to_mm()).abs() < 1e-6, "{seed} {last:?}");
+        assert!((last.place[1] - end.z.to_mm()).abs() < 1e-6, "{seed} {last:?}");
+    }
+}
+
+/// Quick axes and lazy ones, hard and soft, corners cut much and little; on every second machine the operator comes
+/// between.
+#[test]
+fn no_axis_of_any_machine_passes_a_limit() {
+    for seed in 0..300 {
+        let mut dice = Dice::new(seed + 4000);
+        let mut dynamics =
+            Dynamics { corner_s: f64::from(2 + dice.below(28) as u32) * 1e-3, ..Dynamics::default() };
+        for axis in &mut dynamics.axes[..2] {
+            axis.acceleration_per_s2 = dice.size(300.0, 10_000.0);
+            axis.jerk_per_s3 = axis.acceleration_per_s2 / dice.size(1e-3, 0.1);
+        }
+        let rates = MachineRates { dynamics: Some(dynamics), ..rates() };
+        let mut time = 0.0;
+        let mut panels = Vec::new();
+        for _ in 0..if dice.one_in(2) { 20 } else { 0 } {
+            time += dice.between(0.0, 0.3);
+            panels.push((
+                time,
+                Panel { feed: dice.between(0.05, 2.5), is_held: dice.one_in(4), ..Panel::default() },
+            ));
+        }
+        panels.push((time + 0.5, Panel::default()));
+        let actions = program(seed);
+        let samples = played_on(rates, at(30.0, 5.0), 1000.0, &actions, &panels);
+        inspect_on(rates, &samples, 1000.0, &seed);
         let (end, last) = (end_of(&actions), samples[samples.len() - 1]);
         assert!((last.place[0] - end.x.to_mm()).abs() < 1e-6, "{seed} {last:?}");
         assert!((last.place[1] - end.z.to_mm()).abs() < 1e-6, "{seed} {last:?}");
