@@ -14,6 +14,8 @@ use crate::thread::ThreadStretch;
 pub(crate) struct ThreadChain {
     links: Vec<Link>,
     pub(crate) stretches: Vec<ThreadStretch>,
+    /// Where each ends on the way along the long axes, mm.
+    ends_mm: Vec<f64>,
     /// Line of each link.
     pub(crate) lines: Vec<u32>,
     pub(crate) source: u32,
@@ -98,6 +100,7 @@ impl ThreadChain {
             limits: dynamics.threading(&direction),
             limit_mm_per_s: slowest(X).min(slowest(Z)).min(clock.rates().cutting_max_mm_per_min) / 60.0,
         });
+        self.ends_mm.push(self.ends_mm.last().copied().unwrap_or(0.0) + long_mm);
         self.links.push(Link { from, to: end, arc, long, start });
         self.lines.push(command.origin.line);
         self.runs_on = command.origin.runs_on;
@@ -117,8 +120,10 @@ impl ThreadChain {
     pub(crate) fn emptied(mut self) -> Self {
         self.links.clear();
         self.stretches.clear();
+        self.ends_mm.clear();
         self.lines.clear();
-        Self { links: self.links, stretches: self.stretches, lines: self.lines, ..Self::default() }
+        let Self { links, stretches, ends_mm, lines, .. } = self;
+        Self { links, stretches, ends_mm, lines, ..Self::default() }
     }
 
     /// Whether it changes its direction.
@@ -126,16 +131,16 @@ impl ThreadChain {
         self.links.len() > 1 || self.links.iter().any(|link| link.arc.is_some())
     }
 
-    /// Place, and line of the block, after a way along the long axes.
+    /// Place, and line of the block, after a way along the long axes; in a chain of any length at once.
     pub(crate) fn at(&self, way_mm: f64) -> (Place, u32) {
-        let mut done_mm = 0.0;
-        let last = self.links.len().saturating_sub(1);
-        for (index, (link, stretch)) in self.links.iter().zip(&self.stretches).enumerate() {
-            if way_mm <= done_mm + stretch.way_mm || index == last {
-                return (link.place((way_mm - done_mm) / stretch.way_mm), self.lines[index]);
+        let passed = self.ends_mm.partition_point(|end_mm| *end_mm < way_mm);
+        let index = passed.min(self.links.len().saturating_sub(1));
+        let done_mm = index.checked_sub(1).map_or(0.0, |before| self.ends_mm[before]);
+        match (self.links.get(index), self.stretches.get(index)) {
+            (Some(link), Some(stretch)) => {
+                (link.place((way_mm - done_mm) / stretch.way_mm), self.lines[index])
             }
-            done_mm += stretch.way_mm;
+            _ => ([0.0; 6], 0),
         }
-        ([0.0; 6], 0)
     }
 }

@@ -142,9 +142,21 @@ impl Phases {
         Some(*last)
     }
 
+    /// The phases from the first one on that ends at a time or behind it. Who plays has forgotten those before; of a
+    /// long list that is kept they are looked up.
+    fn from(&self, time_s: f64) -> impl Iterator<Item = &Phase> {
+        const FEW: usize = 32;
+        let over = if self.list.len() > FEW {
+            self.list.partition_point(|phase| phase.end_s() < time_s)
+        } else {
+            self.list.iter().take_while(|phase| phase.end_s() < time_s).count()
+        };
+        self.list.range(over..)
+    }
+
     /// Place without averaging.
     pub(crate) fn place(&self, time_s: f64) -> f64 {
-        match self.list.iter().find(|phase| phase.end_s() >= time_s) {
+        match self.from(time_s).next() {
             Some(phase) if phase.start_s <= time_s => phase.place(time_s),
             Some(phase) => phase.start_mm,
             None => self.ends_mm[1],
@@ -158,7 +170,7 @@ impl Phases {
         let mut integral = 0.0;
         let mut at = from;
         let mut now = base;
-        for phase in &self.list {
+        for phase in self.from(from) {
             let end = phase.end_s().min(time_s);
             if end > at {
                 // Before a phase that does not follow at once the tool stands.
@@ -172,7 +184,7 @@ impl Phases {
             }
         }
         if window_s <= 0.0 {
-            let moving = self.list.iter().find(|phase| phase.end_s() >= time_s && phase.start_s <= time_s);
+            let moving = self.from(time_s).next().filter(|phase| phase.start_s <= time_s);
             return PathState {
                 at_mm: base,
                 speed_mm_per_s: moving.map_or(0.0, |phase| phase.speed(time_s)),
