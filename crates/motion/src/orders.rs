@@ -75,7 +75,7 @@ impl Clock {
         let order = match feed.and_then(|feed| self.order_of(feed)) {
             Some(order) => order,
             // In a dry run feed per revolution needs no spindle.
-            None => Order::Speed(self.rates().panel.dry_run_mm_per_min.filter(|feed| *feed > 0.0)? / 60.0),
+            None => Order::Speed(self.panel().dry_run_mm_per_min.filter(|feed| *feed > 0.0)? / 60.0),
         };
         let start = self.place();
         let end = Self::place_after(start, to, others);
