@@ -2,7 +2,12 @@
 //! control or a machine is adding a file and nothing else.
 #![allow(clippy::disallowed_methods, clippy::disallowed_macros, reason = "a build script reads files")]
 
+#[path = "../src/codes.rs"]
+mod codes;
 mod controls;
+#[path = "../src/names.rs"]
+#[allow(dead_code, reason = "nothing is looked up while building")]
+mod names;
 mod tables;
 
 use std::path::{Path, PathBuf};
@@ -12,14 +17,10 @@ use tables::{Entry, constant};
 
 fn main() {
     let data = Path::new(&env::var("CARGO_MANIFEST_DIR").expect("cargo sets it")).join("../../data");
-    let mut machines = "pub(crate) const MACHINES: &[(&str, &str)] = &[\n".to_string();
+    let mut machines = "pub(crate) const MACHINES: &[(&str, &[(&str, Given)])] = &[\n".to_string();
     for file in files(&data.join("machines")) {
         let name = file.file_stem().expect("a file name").to_string_lossy().into_owned();
-        println!("cargo::rerun-if-changed={}", file.display());
-        let text = fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
-        // Remarks are for people: nobody else is to read them at every start.
-        let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
-        machines.push_str(&format!("    ({name:?}, {:?}),\n", lines.join("\n")));
+        machines.push_str(&format!("    ({name:?}, {}),\n", tables::given_pairs(&tables::read(&file))));
     }
     machines.push_str("];\n");
     let questions = tables::read(&data.join("policies.toml"));
@@ -31,9 +32,31 @@ fn main() {
     write("machines.rs", machines);
     write("policies.rs", controls::policies(&questions));
     write("controls.rs", controls::controls(&questions, &controls));
-    write("functions.rs", constant(&data.join("functions.toml"), "ENTRIES", "FunctionEntry", function));
+    let functions = data.join("functions.toml");
+    let slots = name_slots(&functions, "ENTRIES");
+    write("functions.rs", constant(&functions, "ENTRIES", "FunctionEntry", function) + &slots);
     write("messages.rs", constant(&data.join("alarms.toml"), "ENTRIES", "Entry", message));
-    write("parameters.rs", constant(&data.join("parameters.toml"), "TABLE", "Parameter", parameter));
+    let parameters = data.join("parameters.toml");
+    let slots = name_slots(&parameters, "TABLE");
+    write("parameters.rs", constant(&parameters, "TABLE", "Parameter", parameter) + &slots);
+}
+
+/// The source of `NAME_SLOTS`, by which the names of a file's constant are found: a power of two of slots, at most half
+/// of them taken, so that looking ends soon.
+fn name_slots(file: &Path, name: &str) -> String {
+    let table = tables::read(file);
+    let mut sorted: Vec<&str> = table.keys().map(String::as_str).collect();
+    sorted.sort_unstable();
+    let mut slots = vec![names::EMPTY; (sorted.len() * 2).next_power_of_two()];
+    for (place, entry) in (0..names::EMPTY).zip(sorted) {
+        let mut slot = names::hash(entry);
+        while slots[slot & (slots.len() - 1)] != names::EMPTY {
+            slot += 1;
+        }
+        let slot = slot & (slots.len() - 1);
+        slots[slot] = place;
+    }
+    format!("pub(crate) const {name}_SLOTS: &[u16] = &{slots:?};\n")
 }
 
 /// The TOML files of a folder, sorted.
@@ -50,8 +73,10 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 
 fn function(entry: &mut Entry) -> String {
     let mut codes = entry.inner("codes");
-    let [a, b, c] = ["a", "b", "c"].map(|system| codes.optional_text(system));
+    let numbers = ["a", "b", "c"].map(|system| codes.peek(system).map_or(Vec::new(), code_numbers));
+    let texts = ["a", "b", "c"].map(|system| codes.optional_text(system)).join(", ");
     codes.end();
+    let numbers = format!("[&{:?}, &{:?}, &{:?}]", numbers[0], numbers[1], numbers[2]);
     let [en, zh] = ["en", "zh"].map(|language| {
         let mut texts = entry.inner(language);
         let source = format!("Texts {{ name: {}, text: {} }}", texts.text("name"), texts.text("text"));
@@ -59,15 +84,21 @@ fn function(entry: &mut Entry) -> String {
         source
     });
     format!(
-        "FunctionEntry {{ codes: Codes {{ a: {a}, b: {b}, c: {c} }}, group: {}, only: {}, not_on: {}, \
+        "FunctionEntry {{ codes: Codes {{ texts: [{texts}], numbers: {numbers} }}, group: {}, only: {}, not_on: {}, \
          outside_scope: {}, only_with: {}, forms: {}, en: {en}, zh: {zh} }}",
-        entry.text("group"),
+        entry.decimal("group"),
         entry.optional_texts("only"),
         entry.texts("not-on"),
         entry.flag("outside-scope"),
         entry.optional_text("only-with"),
         entry.texts("forms"),
     )
+}
+
+/// The numbers of codes such as `G32/G33`.
+fn code_numbers(text: &str) -> Vec<u16> {
+    let number = |code| codes::parse_code(code).unwrap_or_else(|| panic!("{code} is no code"));
+    text.split('/').map(number).collect()
 }
 
 fn message(entry: &mut Entry) -> String {

@@ -32,6 +32,18 @@ impl Entry {
         self.expect(key, "is no text, or missing", value.as_ref().and_then(Value::as_str).map(literal))
     }
 
+    /// A text that may be missing, left in place.
+    pub(crate) fn peek(&self, key: &str) -> Option<&str> {
+        self.table.get(key).and_then(Value::as_str)
+    }
+
+    /// A small whole number written as a text, such as `"01"`.
+    pub(crate) fn decimal(&mut self, key: &str) -> String {
+        let number = self.peek(key).and_then(|text| text.parse::<u8>().ok());
+        self.table.remove(key);
+        literal(self.expect(key, "is no number from 0 to 255, or missing", number))
+    }
+
     /// A text that may be missing.
     pub(crate) fn optional_text(&mut self, key: &str) -> String {
         if self.table.contains_key(key) { format!("Some({})", self.text(key)) } else { "None".to_string() }
@@ -131,4 +143,26 @@ pub(crate) fn constant(
     }
     source.push_str("];\n");
     source
+}
+
+/// A table as the source of pairs of key and `Given`.
+pub(crate) fn given_pairs(table: &Table) -> String {
+    let pairs: Vec<String> =
+        table.iter().map(|(key, value)| format!("({key:?}, {})", given(key, value))).collect();
+    format!("&[{}]", pairs.join(", "))
+}
+
+fn given(place: &str, value: &Value) -> String {
+    match value {
+        Value::String(text) => format!("Text({text:?})"),
+        Value::Integer(whole) => format!("Whole({whole})"),
+        Value::Float(number) => format!("Number({number:?})"),
+        Value::Boolean(truth) => format!("Truth({truth})"),
+        Value::Array(values) => {
+            let values: Vec<String> = values.iter().map(|value| given(place, value)).collect();
+            format!("List(&[{}])", values.join(", "))
+        }
+        Value::Table(table) => format!("Table({})", given_pairs(table)),
+        Value::Datetime(_) => panic!("{place} is a date"),
+    }
 }

@@ -1,5 +1,7 @@
 //! The code table: which number names which function in G-code systems A, B and C, and what it is for.
 
+use crate::names;
+
 mod table {
     //! Made of `data/functions.toml` by the build script.
     use super::{Codes, FunctionEntry, Texts};
@@ -34,18 +36,18 @@ struct Texts {
     text: &'static str,
 }
 
+/// The codes of a function in the three systems, as text and as numbers.
 #[derive(Clone, Debug)]
 struct Codes {
-    a: Option<&'static str>,
-    b: Option<&'static str>,
-    c: Option<&'static str>,
+    texts: [Option<&'static str>; 3],
+    numbers: [&'static [u16]; 3],
 }
 
 /// A function of the code table.
 #[derive(Clone, Debug)]
 pub struct FunctionEntry {
     codes: Codes,
-    group: &'static str,
+    group: u8,
     only: Option<&'static [&'static str]>,
     not_on: &'static [&'static str],
     /// What it does cannot be told from a program: it is refused for good.
@@ -60,16 +62,17 @@ pub struct FunctionEntry {
 impl FunctionEntry {
     /// Its code in a system, as text (`G71`).
     pub fn code(&self, system: CodeSystem) -> Option<&'static str> {
-        match system {
-            CodeSystem::A => self.codes.a,
-            CodeSystem::B => self.codes.b,
-            CodeSystem::C => self.codes.c,
-        }
+        self.codes.texts[system as usize]
+    }
+
+    /// The numbers of its codes in a system, times ten; the first is the one it is called by.
+    pub fn code_numbers(&self, system: CodeSystem) -> &'static [u16] {
+        self.codes.numbers[system as usize]
     }
 
     /// Its modal group.
-    pub fn group(&self) -> Group {
-        Group(self.group.parse().unwrap_or(0))
+    pub const fn group(&self) -> Group {
+        Group(self.group)
     }
 
     /// Whether a control has it, by the name of its code table.
@@ -111,8 +114,8 @@ impl Functions {
 
     /// A function by name.
     pub fn get(self, name: &str) -> Option<&'static FunctionEntry> {
-        let index = table::ENTRIES.binary_search_by_key(&name, |(known, _)| known).ok()?;
-        Some(&table::ENTRIES[index].1)
+        let place = names::place(table::ENTRIES_SLOTS, table::ENTRIES, name)?;
+        Some(&table::ENTRIES[place].1)
     }
 
     /// Whether any entry says something about a control.
@@ -129,28 +132,17 @@ impl Functions {
         system: CodeSystem,
         control: &str,
     ) -> Option<(&'static str, &'static FunctionEntry)> {
-        let named = self.iter().filter(|(_, entry)| {
-            entry.is_on(control)
-                && entry
-                    .code(system)
-                    .is_some_and(|text| text.split('/').any(|one| parse_code(one) == Some(code)))
-        });
+        let named = self
+            .iter()
+            .filter(|(_, entry)| entry.code_numbers(system).contains(&code) && entry.is_on(control));
         named.min_by_key(|(_, entry)| entry.only_with.is_some())
     }
-}
-
-/// The number of a code such as `G71` or `G50.3`, times ten. Leading zeros do not matter.
-pub fn parse_code(text: &str) -> Option<u16> {
-    let digits = text.trim().trim_start_matches(['G', 'g', 'M', 'm']);
-    let (whole, tenth) = digits.split_once('.').unwrap_or((digits, "0"));
-    let whole: u16 = whole.parse().ok()?;
-    let tenth: u16 = tenth.parse().ok()?;
-    (whole < 1000 && tenth < 10).then_some(whole * 10 + tenth)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parse_code;
 
     /// Codes of a group in systems A, B and C, `-` where a system has none.
     const GROUPS: [(u8, &str); 17] = [
@@ -176,6 +168,15 @@ mod tests {
     const ONE_SHOT: &str = "04,04,04 09,09,09 10,10,10 11,11,11 27,27,27 28,28,28 30,30,30 31,31,31 50,92,92 \
                             50.3,92.1,92.1 52,52,52 53,53,53 65,65,65 70,70,72 71,71,73 72,72,74 73,73,75 \
                             74,74,76 75,75,77 76,76,78";
+
+    #[test]
+    fn every_name_is_found_and_no_other() {
+        for (name, entry) in Functions.iter() {
+            assert!(Functions.get(name).is_some_and(|found| std::ptr::eq(found, entry)), "{name}");
+            assert!(Functions.get(&format!("{name}-")).is_none(), "{name}");
+        }
+        assert!(Functions.get("").is_none());
+    }
 
     #[test]
     fn every_code_of_the_three_systems_is_in_its_group() {

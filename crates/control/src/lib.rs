@@ -7,14 +7,17 @@
 //! policy (see [`policy`]) is answered there and asked by the stage concerned.
 
 mod blank;
+mod codes;
 mod fits;
 mod functions;
 mod gears;
 mod limits;
 mod machine;
+mod machine_files;
 mod materials;
 mod measures;
 mod messages;
+mod names;
 mod outline;
 mod parameter_text;
 mod parameters;
@@ -30,7 +33,8 @@ mod workholding;
 use policy::{AlarmIds, Policies};
 
 pub use blank::Stock;
-pub use functions::{CodeSystem, FunctionEntry, Functions, Group, parse_code};
+pub use codes::parse_code;
+pub use functions::{CodeSystem, FunctionEntry, Functions, Group};
 pub use gears::{GEARS_MAX, Gear, GearSelection};
 pub use limits::Limits;
 pub use machine::{AUXILIARY_TIMES_MAX, AccDec, LinearAxis, Machine, MachineAxes, RotaryAxis, SpeedWait};
@@ -51,11 +55,6 @@ pub use signal::Signal;
 pub use suggest::nearest;
 pub use tooling::{CuttingTurn, Flank, Hand, InsertFacing, Tool, ToolEntry, ToolKind, ToolPost, ToolSide};
 pub use workholding::{Bar, BarEnd, Chuck, ChuckOutlines, Grip, GripLaw, Tailstock};
-
-mod machine_files {
-    //! Made of `data/machines` by the build script.
-    include!(concat!(env!("OUT_DIR"), "/machines.rs"));
-}
 
 mod definitions {
     //! Made of `data/controls` by the build script.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use table::TABLE;
 
-use crate::{Language, nearest};
+use crate::{Language, names, nearest};
 
 mod table {
     //! Made of `data/parameters.toml` by the build script.
@@ -181,7 +181,7 @@ pub struct Parameters {
 
 /// Where a parameter stands in the table.
 fn place(name: &str) -> Option<usize> {
-    TABLE.binary_search_by_key(&name, |(known, _)| known).ok()
+    names::place(table::TABLE_SLOTS, TABLE, name)
 }
 
 impl Parameters {
@@ -410,6 +410,19 @@ mod tests {
         assert!(gsk.bit("feed-per-minute-at-power-on"));
         gsk.set("182#0", "1").expect("known");
         assert!(!gsk.bit("feed-per-minute-at-power-on"));
+    }
+
+    #[test]
+    fn every_name_is_found_and_no_other() {
+        for (at, (name, _)) in TABLE.iter().enumerate() {
+            assert_eq!(place(name), Some(at), "{name}");
+            for other in [format!("{name}-"), format!("-{name}"), name[1..].to_string(), name.to_uppercase()]
+            {
+                let known = TABLE.iter().position(|(name, _)| *name == other);
+                assert_eq!(place(&other), known, "{other}");
+            }
+        }
+        assert_eq!(place(""), None);
     }
 
     #[test]

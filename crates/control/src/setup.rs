@@ -513,13 +513,13 @@ impl Setup {
     /// An unknown machine or an unknown key among the overrides.
     pub fn machine(&self) -> Result<Machine, SetupFault> {
         let wanted = self.machine.as_deref().unwrap_or("generic-lathe");
-        let Some((_, text)) = machine_files::MACHINES.iter().find(|(name, _)| *name == wanted) else {
+        let Some((_, pairs)) = machine_files::MACHINES.iter().find(|(name, _)| *name == wanted) else {
             let near = nearest(wanted, machine_names());
             let near = near.map_or(String::new(), |name| format!("; did you mean {name}?"));
             return Err(SetupFault { message: format!("no machine is called {wanted}{near}"), line: 0 });
         };
         let fault = |error: toml::de::Error| SetupFault { message: error.message().to_string(), line: 0 };
-        let mut table: toml::Table = toml::from_str(text).map_err(fault)?;
+        let mut table = machine_files::table(pairs);
         for (key, value) in &self.rates {
             // A whole number is a fine length too.
             table.insert(key.clone(), value.clone());

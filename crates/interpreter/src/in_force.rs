@@ -6,7 +6,7 @@
 //!
 //! Source: modal groups and the state at power-on, both families.
 
-use turnwright_control::{CodeSystem, Functions, Parameters, parse_code};
+use turnwright_control::{CodeSystem, Functions, Parameters};
 use turnwright_syntax::{Value, Word};
 
 use crate::functions::{Dispatch, FunctionId};
@@ -75,7 +75,7 @@ pub(crate) fn codes_at_power_on(
     let names = names_at_power_on(parameters, system).into_iter().flatten().chain(ALSO_AT_POWER_ON);
     for entry in names.filter_map(|name| functions.get(name)).filter(|entry| entry.is_on(code_table)) {
         if let Some(slot) = codes.get_mut(usize::from(entry.group().0)) {
-            *slot = entry.code(system).and_then(|text| text.split('/').next()).and_then(parse_code);
+            *slot = entry.code_numbers(system).first().copied();
         }
     }
     codes

@@ -44,7 +44,7 @@ mod three_point_arc;
 mod transforms;
 
 use turnwright_canon::Turn;
-use turnwright_control::{CodeSystem, Control, Functions, parse_code};
+use turnwright_control::{CodeSystem, Control, Functions};
 use turnwright_syntax::Block;
 
 use crate::block::Call;
@@ -454,9 +454,8 @@ impl Dispatch {
             if !entry.is_on(control.code_table) {
                 continue;
             }
-            for code in entry.code(system).into_iter().flat_map(|text| text.split('/')).filter_map(parse_code)
-            {
-                table[usize::from(code)] = place as u8 + 1;
+            for code in entry.code_numbers(system) {
+                table[usize::from(*code)] = place as u8 + 1;
             }
         }
         let codes_at_power_on = codes_at_power_on(&control.parameters, system, control.code_table);
