@@ -1,8 +1,8 @@
 //! What the axes can do beyond their rates: acceleration, jerk, and how corners are passed.
 //!
 //! A cutting path meets several demands at once: it speeds up, it bends, and at its corners the axes change speed. Each
-//! has its share of what an axis can do, so that together they never ask for more. Rapids, alone on a straight way,
-//! have all of it.
+//! has its share of what an axis can do, so that together they never ask for more. Rapids, and a cut by itself on a
+//! straight way, have all of it.
 
 use crate::leg::{Heading, Leg, Place, X, Z};
 use crate::planner::{RunLimits, SHARE_MAX, SHARE_MIN, most};
