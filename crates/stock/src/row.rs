@@ -18,7 +18,7 @@ const CHUNK_SLABS_MAX: usize = 48;
 
 /// A slab narrower than this, mm, with more bands is a comb: what a round nose leaves of an upright face that thousands
 /// of passes end at. Nobody sees its teeth, and every later cut would look at each of them.
-const COMB_MM: f64 = 1e-5;
+const COMB_MM: f64 = 1e-4;
 const COMB_BANDS_MAX: usize = 24;
 
 /// Gaps of a comb up to this are filled.
