@@ -62,9 +62,12 @@ impl RunLimits {
     /// again takes 2·J·T³ when the top lasts no longer than it must. So T is the largest for which neither is too much.
     #[must_use]
     pub fn eased(self, way_mm: f64, speed_mm_per_s: f64) -> Self {
-        let jerk = self.jerk_mm_per_s3;
-        let window_s =
-            self.window_s().min((speed_mm_per_s / jerk).sqrt()).min(libm::cbrt(way_mm / (2.0 * jerk)));
+        let (jerk, window_s) = (self.jerk_mm_per_s3, self.window_s());
+        let gained = jerk * window_s * window_s;
+        if speed_mm_per_s >= gained && way_mm >= 2.0 * gained * window_s {
+            return self;
+        }
+        let window_s = window_s.min((speed_mm_per_s / jerk).sqrt()).min(libm::cbrt(way_mm / (2.0 * jerk)));
         Self { acceleration_mm_per_s2: self.acceleration_mm_per_s2.min(jerk * window_s), ..self }
     }
 

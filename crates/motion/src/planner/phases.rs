@@ -142,21 +142,20 @@ impl Phases {
         Some(*last)
     }
 
-    /// The phases from the first one on that ends at a time or behind it. Who plays has forgotten those before; of a
-    /// long list that is kept they are looked up.
+    /// The phases, those left out that a long list has before a time. Who plays has forgotten them anyhow.
+    #[inline]
     fn from(&self, time_s: f64) -> impl Iterator<Item = &Phase> {
-        const FEW: usize = 32;
-        let over = if self.list.len() > FEW {
-            self.list.partition_point(|phase| phase.end_s() < time_s)
-        } else {
-            self.list.iter().take_while(|phase| phase.end_s() < time_s).count()
+        const FEW: usize = 256;
+        let over = match self.list.len() {
+            0..=FEW => 0,
+            _ => self.list.partition_point(|phase| phase.end_s() < time_s),
         };
-        self.list.range(over..)
+        self.list.iter().skip(over)
     }
 
     /// Place without averaging.
     pub(crate) fn place(&self, time_s: f64) -> f64 {
-        match self.from(time_s).next() {
+        match self.from(time_s).find(|phase| phase.end_s() >= time_s) {
             Some(phase) if phase.start_s <= time_s => phase.place(time_s),
             Some(phase) => phase.start_mm,
             None => self.ends_mm[1],
@@ -184,7 +183,7 @@ impl Phases {
             }
         }
         if window_s <= 0.0 {
-            let moving = self.from(time_s).next().filter(|phase| phase.start_s <= time_s);
+            let moving = self.from(time_s).find(|phase| phase.end_s() >= time_s && phase.start_s <= time_s);
             return PathState {
                 at_mm: base,
                 speed_mm_per_s: moving.map_or(0.0, |phase| phase.speed(time_s)),
