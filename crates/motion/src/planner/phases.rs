@@ -142,14 +142,12 @@ impl Phases {
         Some(*last)
     }
 
-    /// The phases, those left out that a long list has before a time. Who plays has forgotten them anyhow.
+    /// The phases, but for those that end long before a time. Who plays has forgotten them: then there are none.
     #[inline]
     fn from(&self, time_s: f64) -> impl Iterator<Item = &Phase> {
-        const FEW: usize = 256;
-        let over = match self.list.len() {
-            0..=FEW => 0,
-            _ => self.list.partition_point(|phase| phase.end_s() < time_s),
-        };
+        const FEW: usize = 16;
+        let is_long = self.list.get(FEW).is_some_and(|phase| phase.end_s() < time_s);
+        let over = if is_long { self.list.partition_point(|phase| phase.end_s() < time_s) } else { 0 };
         self.list.iter().skip(over)
     }
 
