@@ -111,7 +111,7 @@ impl Corners {
     }
 
     /// No tool is sooner at the corner just met, which alone is passed at 1 / `slowness`, than the acceleration lets it,
-    /// and the jerk; no stretch since the last one is faster than `limit`.
+    /// and the jerk; just before it no tool is faster than `limit`.
     #[inline]
     fn pass(&mut self, slowness: f64, limit: f64) {
         let is_apart = self.soonest_s - self.last_s >= self.law.time_s;
@@ -125,7 +125,9 @@ impl Corners {
     /// Between the last corner and the one just met, which is passed at a speed, the tool can only get so fast.
     fn be_late(&mut self, mm_per_s: f64) {
         let way = self.end_mm - self.last_mm;
-        let acceleration = self.limits.acceleration_mm_per_s2;
+        // A slanted leg has more than the limits say.
+        let share = self.waiting.back().map_or(1.0, |before| most(before.share, 1.0));
+        let acceleration = share * self.limits.acceleration_mm_per_s2;
         let (slow, fast) = (least(self.last_mm_per_s, mm_per_s), most(self.last_mm_per_s, mm_per_s));
         let change = 2.0 * acceleration * way;
         let seconds = if fast * fast - slow * slow >= change {
@@ -136,7 +138,7 @@ impl Corners {
         };
         // From full acceleration to full deceleration the tool gets no further in one time.
         let time = self.law.time_s;
-        let is_apart = way >= time * (fast + self.limits.jerk_mm_per_s3 * time * time / 12.0);
+        let is_apart = way >= time * (fast + share * self.limits.jerk_mm_per_s3 * time * time / 12.0);
         let seconds = if is_apart { most(seconds, time) } else { seconds };
         self.soonest_s = most(self.soonest_s, self.last_s + seconds);
         if let Some(before) = self.waiting.back_mut() {
